@@ -20,7 +20,6 @@ _SmoothLaws = tuple[_Integers, _Real, _SmoothCalls, NDArray[np.uint8]]
 _Step = tuple[float, _Real, _Real, _Real, _Real, _Real, _Real]
 _Failure = tuple[BaseException | None, int, float, float, float]
 _Space = tuple[Any, ...]
-_Banded = NDArray[Any]
 _State = tuple[_Real, _Real, _Real, _Real, _Real]
 
 def section(
@@ -189,9 +188,20 @@ def closed_chain_count(
 ) -> NDArray[np.int64]: ...
 def space_triples(
     rates: _Complex, series: _Real, length: float, halvings: int, doublings: int, gentle: float, /
-) -> tuple[_Complex, int]: ...
+) -> tuple[_Complex, int, bool]: ...
 def space_factor(
-    D: _Banded, G: _Banded, Q: _Banded, N: _Banded, fixed: NDArray[np.uint8], /
-) -> tuple[_Banded, _Integers, int]: ...
-def space_solve(factors: _Banded, pivots: _Integers, right: _Banded, /) -> _Banded: ...
-def space_count(rope: _Space, eigenvalue: _Real, scale: _Real, /) -> _Real: ...
+    D: _Real, G: _Real, Q: _Real, N: _Real, fixed: NDArray[np.uint8], /
+) -> tuple[_Real, _Integers, int]: ...
+def space_solve(factors: _Real, pivots: _Integers, right: _Real, /) -> _Real: ...
+def space_respond(
+    D: _Complex,
+    G: _Complex,
+    Q: _Complex,
+    N: _Complex,
+    fixed: NDArray[np.uint8],
+    right: _Complex,
+    /,
+) -> _Complex: ...
+def space_count(
+    rope: _Space, component: _Integers, eigenvalue: _Real, scale: _Real, /
+) -> _Real: ...

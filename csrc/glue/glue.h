@@ -130,6 +130,7 @@ PyObject *py_space_triples(PyObject *module, PyObject *arguments);
 PyObject *py_space_count(PyObject *module, PyObject *arguments);
 PyObject *py_space_factor(PyObject *module, PyObject *arguments);
 PyObject *py_space_solve(PyObject *module, PyObject *arguments);
+PyObject *py_space_respond(PyObject *module, PyObject *arguments);
 PyObject *py_recurrence(PyObject *module, PyObject *arguments);
 PyObject *py_collocate(PyObject *module, PyObject *arguments);
 PyObject *py_volterra(PyObject *module, PyObject *arguments);

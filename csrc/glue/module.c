@@ -46,12 +46,15 @@ static PyMethodDef methods[] = {
      "carried_slopes(chain, shape, motion, eigenvalue) -> slopes by m and k, by the row of the "
      "foot"},
     {"space_triples", py_space_triples, METH_VARARGS,
-     "space_triples(rates, series, length, halvings, doublings, gentle) -> triples, doublings"},
+     "space_triples(rates, series, length, halvings, doublings, gentle) -> triples, doublings, "
+     "whole"},
     {"space_factor", py_space_factor, METH_VARARGS,
      "space_factor(D, G, Q, N, fixed) -> factors, pivots, failed"},
     {"space_solve", py_space_solve, METH_VARARGS, "space_solve(factors, pivots, right) -> x"},
+    {"space_respond", py_space_respond, METH_VARARGS,
+     "space_respond(D, G, Q, N, fixed, right) -> x"},
     {"space_count", py_space_count, METH_VARARGS,
-     "space_count(rope, eigenvalues, scale) -> counts"},
+     "space_count(rope, components, eigenvalues, scale) -> counts"},
     {"recurrence", py_recurrence, METH_VARARGS,
      "recurrence(change, seen, length, force, state) -> value, state"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (3, 2, f)"},

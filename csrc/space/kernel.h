@@ -1,5 +1,5 @@
-/* Triples of short pieces and their joints for numbers of one type, NUM: included by one source file
-   each, which has add, subtract, times, scaled, over, number(double), size(a), how large a number is,
+/* Triples of short pieces and their joints for WIDE coordinates and numbers of one type, NUM: included
+   by one source file each, which has add, subtract, times, scaled, over, number(double), size(a), how large a number is,
    is_zero, and for exchanges of rows EITHER with larger(a, b), any and exchange(a, b, either). */
 #include "space/space.h"
 
@@ -7,13 +7,14 @@
 #include <string.h>
 
 enum {
+    TRIPLE = 3 * WIDE * WIDE,
     TERMS = 24, /* of the series of a piece of up to half a radian, for all digits of all entries */
-    ALL_SIX = 2 * RD_SIX,
-    ENTRIES = ALL_SIX * ALL_SIX,
+    STATE = 2 * WIDE,
+    ENTRIES = STATE * STATE,
 };
 
 struct triple {
-    NUM D[RD_SIX][RD_SIX], G[RD_SIX][RD_SIX], Q[RD_SIX][RD_SIX]; /* D = F - I */
+    NUM D[WIDE][WIDE], G[WIDE][WIDE], Q[WIDE][WIDE]; /* D = F - I */
 };
 
 /* entries of l^(k+1) E_k, E = sum E_k s^k, that are not all 0 */
@@ -23,72 +24,70 @@ struct rates {
     NUM value[RD_SPACE_ORDERS][ENTRIES];
 };
 
-RD_INLINE void multiply(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX],
-                        NUM C[RD_SIX][RD_SIX])
+RD_INLINE void multiply(const NUM A[WIDE][WIDE], const NUM B[WIDE][WIDE], NUM C[WIDE][WIDE])
 {
-    for (int i = 0; i < RD_SIX; i++) {
-        NUM row[RD_SIX];
-        for (int j = 0; j < RD_SIX; j++)
+    for (int i = 0; i < WIDE; i++) {
+        NUM row[WIDE];
+        for (int j = 0; j < WIDE; j++)
             row[j] = number(0);
-        for (int k = 0; k < RD_SIX; k++) {
+        for (int k = 0; k < WIDE; k++) {
             const NUM a = A[i][k];
             if (is_zero(a))
                 continue;
-            for (int j = 0; j < RD_SIX; j++)
+            for (int j = 0; j < WIDE; j++)
                 row[j] = add(row[j], times(a, B[k][j]));
         }
         memcpy(C[i], row, sizeof row);
     }
 }
 
-RD_INLINE void transpose(const NUM A[RD_SIX][RD_SIX], NUM B[RD_SIX][RD_SIX])
+RD_INLINE void transpose(const NUM A[WIDE][WIDE], NUM B[WIDE][WIDE])
 {
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++)
+    for (int i = 0; i < WIDE; i++)
+        for (int j = 0; j < WIDE; j++)
             B[i][j] = A[j][i];
 }
 
 /* A <- A + B */
-RD_INLINE void increase(NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX])
+RD_INLINE void increase(NUM A[WIDE][WIDE], const NUM B[WIDE][WIDE])
 {
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++)
+    for (int i = 0; i < WIDE; i++)
+        for (int j = 0; j < WIDE; j++)
             A[i][j] = add(A[i][j], B[i][j]);
 }
 
 /* C = A + B, symmetric but for rounding */
-RD_INLINE void add_symmetric(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX],
-                             NUM C[RD_SIX][RD_SIX])
+RD_INLINE void add_symmetric(const NUM A[WIDE][WIDE], const NUM B[WIDE][WIDE], NUM C[WIDE][WIDE])
 {
-    for (int i = 0; i < RD_SIX; i++)
+    for (int i = 0; i < WIDE; i++)
         for (int j = 0; j <= i; j++)
             C[i][j] = C[j][i] = add(A[i][j], scaled(add(B[i][j], B[j][i]), 0.5));
 }
 
 /* X (n columns, `wide` apart) <- A^-1 X by Gauss and Jordan with exchanges, A destroyed; the largest entry
    of A^-1 is at most that of X where X begins with the unit matrix */
-RD_INLINE void divide(NUM A[RD_SIX][RD_SIX], int n, NUM *X)
+RD_INLINE void divide(NUM A[WIDE][WIDE], int n, NUM *X)
 {
-    for (int k = 0; k < RD_SIX; k++) {
-        for (int i = k + 1; i < RD_SIX; i++) {
+    for (int k = 0; k < WIDE; k++) {
+        for (int i = k + 1; i < WIDE; i++) {
             const EITHER swap = larger(A[i][k], A[k][k]);
             if (!any(swap))
                 continue;
-            for (int j = 0; j < RD_SIX; j++)
+            for (int j = 0; j < WIDE; j++)
                 exchange(&A[k][j], &A[i][j], swap);
             for (int j = 0; j < n; j++)
                 exchange(X + k * n + j, X + i * n + j, swap);
         }
         const NUM inverse = over(A[k][k]);
-        for (int j = k; j < RD_SIX; j++)
+        for (int j = k; j < WIDE; j++)
             A[k][j] = times(A[k][j], inverse);
         for (int j = 0; j < n; j++)
             X[k * n + j] = times(X[k * n + j], inverse);
-        for (int i = 0; i < RD_SIX; i++) {
+        for (int i = 0; i < WIDE; i++) {
             const NUM a = A[i][k];
             if (i == k || is_zero(a))
                 continue;
-            for (int j = k; j < RD_SIX; j++)
+            for (int j = k; j < WIDE; j++)
                 A[i][j] = subtract(A[i][j], times(a, A[k][j]));
             for (int j = 0; j < n; j++)
                 X[i * n + j] = subtract(X[i * n + j], times(a, X[k * n + j]));
@@ -99,20 +98,20 @@ RD_INLINE void divide(NUM A[RD_SIX][RD_SIX], int n, NUM *X)
 /* column c of the change of y along the piece, u over f: (k + 1) y_k+1 = sum E_j y_k-j */
 RD_INLINE void column(const struct rates *E, int c, NUM *sum)
 {
-    NUM term[TERMS + 1][ALL_SIX];
-    for (int i = 0; i < ALL_SIX; i++) {
+    NUM term[TERMS + 1][STATE];
+    for (int i = 0; i < STATE; i++) {
         sum[i] = number(0);
         term[0][i] = number(i == c);
     }
     for (int m = 1; m <= TERMS; m++) {
         NUM *next = term[m];
-        for (int i = 0; i < ALL_SIX; i++)
+        for (int i = 0; i < STATE; i++)
             next[i] = number(0);
         for (int k = 0; k < E->orders && k < m; k++)
             for (int e = 0; e < E->entries; e++)
                 next[E->row[e]] =
                     add(next[E->row[e]], times(E->value[k][e], term[m - 1 - k][E->column[e]]));
-        for (int i = 0; i < ALL_SIX; i++) {
+        for (int i = 0; i < STATE; i++) {
             next[i] = scaled(next[i], 1.0 / m);
             sum[i] = add(sum[i], next[i]);
         }
@@ -122,29 +121,29 @@ RD_INLINE void column(const struct rates *E, int c, NUM *sum)
 /* F^T = E22^-1, G = E12 E22^-1 and Q = E22^-1 E21 of what a piece carries, [[E11, E12], [E21, E22]] */
 RD_INLINE void first(const struct rates *E, struct triple *t)
 {
-    enum { ALL = 3 * RD_SIX };
-    NUM A[RD_SIX][RD_SIX], X[RD_SIX][ALL], sum[ALL_SIX];
-    NUM soft[RD_SIX][RD_SIX], inverse[RD_SIX][RD_SIX], zero[RD_SIX][RD_SIX];
-    for (int c = 0; c < RD_SIX; c++) {
+    enum { ALL = 3 * WIDE };
+    NUM A[WIDE][WIDE], X[WIDE][ALL], sum[STATE];
+    NUM soft[WIDE][WIDE], inverse[WIDE][WIDE], zero[WIDE][WIDE];
+    for (int c = 0; c < WIDE; c++) {
         column(E, c, sum);
-        for (int i = 0; i < RD_SIX; i++)
-            X[i][RD_SIX + c] = sum[RD_SIX + i];
-        column(E, RD_SIX + c, sum);
-        for (int i = 0; i < RD_SIX; i++) {
+        for (int i = 0; i < WIDE; i++)
+            X[i][WIDE + c] = sum[WIDE + i];
+        column(E, WIDE + c, sum);
+        for (int i = 0; i < WIDE; i++) {
             const NUM one = number(i == c);
             zero[i][c] = number(0);
             soft[i][c] = sum[i];
-            A[i][c] = add(sum[RD_SIX + i], one);
-            X[i][c] = sum[RD_SIX + i];
-            X[i][2 * RD_SIX + c] = one;
+            A[i][c] = add(sum[WIDE + i], one);
+            X[i][c] = sum[WIDE + i];
+            X[i][2 * WIDE + c] = one;
         }
     }
     divide(A, ALL, &X[0][0]);
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++) {
+    for (int i = 0; i < WIDE; i++)
+        for (int j = 0; j < WIDE; j++) {
             t->D[j][i] = scaled(X[i][j], -1);
-            t->Q[i][j] = X[i][RD_SIX + j];
-            inverse[i][j] = X[i][2 * RD_SIX + j];
+            t->Q[i][j] = X[i][WIDE + j];
+            inverse[i][j] = X[i][2 * WIDE + j];
         }
     multiply(soft, inverse, t->G);
     add_symmetric(zero, t->G, t->G);
@@ -152,18 +151,18 @@ RD_INLINE void first(const struct rates *E, struct triple *t)
 }
 
 /* A <- A + A D */
-RD_INLINE void carry(NUM A[RD_SIX][RD_SIX], const NUM D[RD_SIX][RD_SIX])
+RD_INLINE void carry(NUM A[WIDE][WIDE], const NUM D[WIDE][WIDE])
 {
-    NUM AD[RD_SIX][RD_SIX];
+    NUM AD[WIDE][WIDE];
     multiply(A, D, AD);
     increase(A, AD);
 }
 
 /* C = A + (I + D)^T B (I + D) */
-RD_INLINE void add_congruent(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX],
-                             const NUM D[RD_SIX][RD_SIX], NUM C[RD_SIX][RD_SIX])
+RD_INLINE void add_congruent(const NUM A[WIDE][WIDE], const NUM B[WIDE][WIDE],
+                             const NUM D[WIDE][WIDE], NUM C[WIDE][WIDE])
 {
-    NUM BF[RD_SIX][RD_SIX], Dt[RD_SIX][RD_SIX], DtBF[RD_SIX][RD_SIX];
+    NUM BF[WIDE][WIDE], Dt[WIDE][WIDE], DtBF[WIDE][WIDE];
     memcpy(BF, B, sizeof BF);
     carry(BF, D);
     transpose(D, Dt);
@@ -180,38 +179,38 @@ RD_INLINE void add_congruent(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD
 RD_INLINE SIZE join(const struct triple *one, const struct triple *two, const NUM *N,
                     struct triple *joined)
 {
-    enum { ALL = 2 * RD_SIX };
-    NUM V[RD_SIX][RD_SIX], A[RD_SIX][RD_SIX], X[RD_SIX][RD_SIX], both[RD_SIX][ALL];
+    enum { ALL = 2 * WIDE };
+    NUM V[WIDE][WIDE], A[WIDE][WIDE], X[WIDE][WIDE], both[WIDE][ALL];
     memcpy(V, two->Q, sizeof V);
-    for (int i = 0; N && i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++)
-            V[i][j] = add(V[i][j], N[i * RD_SIX + j]);
+    for (int i = 0; N && i < WIDE; i++)
+        for (int j = 0; j < WIDE; j++)
+            V[i][j] = add(V[i][j], N[i * WIDE + j]);
     multiply(one->G, V, A);
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++) {
+    for (int i = 0; i < WIDE; i++)
+        for (int j = 0; j < WIDE; j++) {
             both[i][j] = number(i == j);
             A[i][j] = add(A[i][j], both[i][j]);
-            both[i][RD_SIX + j] = one->G[i][j];
+            both[i][WIDE + j] = one->G[i][j];
         }
     divide(A, ALL, &both[0][0]);
     SIZE largest = size(both[0][0]);
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++) {
+    for (int i = 0; i < WIDE; i++)
+        for (int j = 0; j < WIDE; j++) {
             largest = larger_size(largest, size(both[i][j]));
-            X[i][j] = scaled(add(both[i][RD_SIX + j], both[j][RD_SIX + i]), 0.5);
+            X[i][j] = scaled(add(both[i][WIDE + j], both[j][WIDE + i]), 0.5);
         }
-    NUM XV[RD_SIX][RD_SIX], S[RD_SIX][RD_SIX], Dt[RD_SIX][RD_SIX], T[RD_SIX][RD_SIX];
+    NUM XV[WIDE][WIDE], S[WIDE][WIDE], Dt[WIDE][WIDE], T[WIDE][WIDE];
     struct triple found;
     multiply(X, V, XV);
     multiply(V, XV, S);
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++)
+    for (int i = 0; i < WIDE; i++)
+        for (int j = 0; j < WIDE; j++)
             S[i][j] = subtract(V[i][j], S[i][j]);
     carry(XV, one->D);
     multiply(two->D, XV, T);
     multiply(two->D, one->D, found.D);
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++)
+    for (int i = 0; i < WIDE; i++)
+        for (int j = 0; j < WIDE; j++)
             found.D[i][j] = subtract(add(found.D[i][j], add(one->D[i][j], two->D[i][j])),
                                      add(XV[i][j], T[i][j]));
     transpose(two->D, Dt);
@@ -233,22 +232,21 @@ RD_INLINE void rates_fill(size_t fields, const NUM *E, const double *series, dou
             if (series[j * RD_SPACE_ORDERS + (size_t)k] != 0 && rates->orders <= k)
                 rates->orders = k + 1;
     for (int i = 0; i < ENTRIES; i++) {
-        const int row = i / ALL_SIX, col = i % ALL_SIX, r = row % RD_SIX, c = col % RD_SIX;
+        const int row = i / STATE, col = i % STATE, r = row % WIDE, c = col % WIDE;
         /* Phi S / q -Phi^T */
-        const int block = row < RD_SIX ? (col < RD_SIX ? 0 : 1) : (col < RD_SIX ? 2 : 0);
-        const int turned = row >= RD_SIX && col >= RD_SIX;
-        const size_t at =
-            (size_t)(block * RD_SIX * RD_SIX + (turned ? c * RD_SIX + r : r * RD_SIX + c));
+        const int block = row < WIDE ? (col < WIDE ? 0 : 1) : (col < WIDE ? 2 : 0);
+        const int turned = row >= WIDE && col >= WIDE;
+        const size_t at = (size_t)(block * WIDE * WIDE + (turned ? c * WIDE + r : r * WIDE + c));
         int there = 0;
         for (size_t j = 0; j < fields; j++)
-            there |= !is_zero(E[j * RD_SPACE_TRIPLE + at]);
+            there |= !is_zero(E[j * TRIPLE + at]);
         if (!there)
             continue;
         double power = turned ? -length : length;
         for (int k = 0; k < rates->orders; k++, power *= length) {
             NUM sum = number(0);
             for (size_t j = 0; j < fields; j++)
-                sum = add(sum, scaled(E[j * RD_SPACE_TRIPLE + at],
+                sum = add(sum, scaled(E[j * TRIPLE + at],
                                       power * series[j * RD_SPACE_ORDERS + (size_t)k]));
             rates->value[k][rates->entries] = sum;
         }
@@ -296,11 +294,11 @@ RD_INLINE void interpolate(const struct family *f, double x, struct triple *t)
         return;
     }
     NUM *to = &t->D[0][0];
-    for (int i = 0; i < RD_SPACE_TRIPLE; i++)
+    for (int i = 0; i < TRIPLE; i++)
         to[i] = number(0);
     for (int j = 0; j < n; j++) {
         const NUM *from = &f->at[j].D[0][0];
-        for (int i = 0; i < RD_SPACE_TRIPLE; i++)
+        for (int i = 0; i < TRIPLE; i++)
             to[i] = add(to[i], scaled(from[i], weight[j] / sum));
     }
 }

@@ -1,4 +1,7 @@
-/* A rope on an axis in space: pieces one after another, all six coordinates at each node.
+/* A rope on an axis in space: pieces one after another, `width` coordinates at each node.
+
+   All six, or three of them where a curve is plane and nothing ties its planes: {x, z, beta} in the plane
+   and {y, alpha, gamma} across it. Every matrix is (width, width), width 3 or 6.
 
    y = (u, f), f the force of the right part on the left in the undeformed frame, has y' = E y along a
    piece, E = [[Phi, S], [q, -Phi^T]] with S and q symmetric. Its triple is that of any element:
@@ -15,13 +18,28 @@
 #include <stdint.h>
 
 enum {
-    RD_SIX = 6,
-    RD_SPACE_TRIPLE = 3 * RD_SIX * RD_SIX,
-    RD_SPACE_BAND = 2 * RD_SIX - 1,        /* entries on either side of the diagonal */
-    RD_SPACE_ROWS = 3 * RD_SPACE_BAND + 1, /* of its columns as LAPACK factors them */
-    RD_SPACE_NODES = 24,                   /* of a piece's polynomials, at most */
-    RD_SPACE_ORDERS = 14,                  /* of the fields' series */
+    RD_SIX = 6,           /* coordinates at most */
+    RD_SPACE_NODES = 24,  /* of a piece's polynomials, at most */
+    RD_SPACE_ORDERS = 14, /* of the fields' series */
 };
+
+/* of the matrices of one part */
+static inline size_t rd_space_triple(size_t width)
+{
+    return 3 * width * width;
+}
+
+/* entries on either side of a band's diagonal */
+static inline size_t rd_space_beside(size_t width)
+{
+    return 2 * width - 1;
+}
+
+/* of a band's columns as LAPACK factors them */
+static inline size_t rd_space_rows(size_t width)
+{
+    return 3 * rd_space_beside(width) + 1;
+}
 
 /* Joints whose inverse has larger entries are not joined: near a resonance of what is on their left. A
    larger one is taken where too many parts are left: it costs the count as many digits again. */
@@ -33,6 +51,7 @@ static const double rd_space_gentle[RD_SPACE_GENTLE] = {1e2, 1e4};
    else parts about the nodes of a polynomial (Chebyshev's of the first kind, decreasing), from which
    the others are interpolated. */
 struct rd_space_run {
+    size_t width;
     double length; /* [m] */
     int halvings, nodes;
     size_t fields;
@@ -40,58 +59,67 @@ struct rd_space_run {
 };
 
 struct rd_space {
-    size_t pieces, fields;
+    size_t components, width, pieces, fields;
     const double *length;    /* (pieces)          [m] */
     const int32_t *halvings; /* (pieces)  */
     const int32_t *nodes;    /* (pieces)  */
     const double *series;    /* (sum of nodes, fields, RD_SPACE_ORDERS) */
-    const double *rates;     /* (pieces, fields, 3, 6, 6)  Phi, S and q at lambda = 0 */
-    const double *inertia;   /* (pieces, 6, 6)    per length */
-    const double *turn; /* (pieces, 6, 6)    R: components on the left of the node where it begins
-                                                  to those on the right */
+    /* of each component: */
+    const double *rates;   /* (pieces, fields, 3, width, width)  Phi, S and q at lambda = 0 */
+    const double *inertia; /* (pieces, width, width)    per length */
+    const double *turn; /* (pieces, width, width)    R: coordinates on the left of the node where it
+                                begins to those on the right */
     const double
-        *stiffness;      /* (pieces + 1, 6, 6) of nodes, in the frame on the left; at the first on
-                                                  the right */
-    const double *mass;  /* (pieces + 1, 6, 6) */
-    const uint8_t *held; /* (pieces + 1, 6)   1: cannot move; as stiffness */
+        *stiffness;      /* (pieces + 1, width, width) of nodes, in the frame on the left; at the
+                                first on the right */
+    const double *mass;  /* (pieces + 1, width, width) */
+    const uint8_t *held; /* (pieces + 1, width)   1: cannot move; as stiffness */
 };
 
-/* The parts of a piece at `lines` (lines, fields, 3, 6, 6) = Phi, S, q of each field, doubled
+/* The parts of a piece at `lines` (lines, fields, 3, width, width) = Phi, S, q of each field, doubled
    `doublings` times or, earlier, while no joint's inverse has an entry above `gentle`: *reached says
-   how often. triple (lines, parts, 3, 6, 6), parts = 2^(halvings - doublings) or 1 where they are
-   alike: D = F - I, G, Q; not written where not all were reached. Takes what it needs from the
+   how often. triple (lines, parts, 3, width, width), parts = 2^(halvings - doublings) or 1 where they are
+   alike: D = F - I, G, Q; of use only where *whole says that each was doubled *reached times, which are
+   `doublings` where they are not alike. Takes what it needs from the
    workspace (with base NULL: counts it). RD_NO_MEMORY where that is too small. */
 enum rd_status rd_space_triples(const struct rd_space_run *run, size_t lines,
                                 const double _Complex *rates, int doublings, double gentle,
-                                double _Complex *triple, int *reached,
+                                double _Complex *triple, int *reached, int *whole,
                                 struct rd_workspace *workspace);
 
 /* The matrix of motion u at the nodes and force f at the right end of each part, u_0, f_0, u_1 ..,
 
        f_i-1 - F^T f_i + (Q + N) u_i = p_i,   u_i+1 - F u_i - G f_i = d_i,
 
-   as LAPACK's band by columns (lines, size, RD_SPACE_ROWS), size = 12 parts + 6, of entries of `numbers`
-   doubles, 1 or 2: D, G, Q (lines, parts, 6, 6), N (lines, parts + 1, 6, 6); rows and columns that
-   are fixed (size) are those of 1. */
-void rd_space_band(size_t lines, size_t parts, size_t numbers, const double *D, const double *G,
-                   const double *Q, const double *N, const uint8_t *fixed, double *band);
+   a band of size = (2 parts + 1) width, at so many lines, of entries of `numbers` doubles, 1 or 2; rows
+   and columns that are fixed are those of 1. */
+struct rd_space_band {
+    size_t width, lines, parts, numbers;
+    const double *D, *G, *Q; /* (lines, parts, width, width) */
+    const double *N;         /* (lines, parts + 1, width, width) */
+    const uint8_t *fixed;    /* (lines, size) */
+};
 
-/* Such bands, factored in place as LAPACK does; pivot
-   (lines, size). Returns the first that is singular, or `lines`. */
-size_t rd_space_factor(size_t lines, size_t size, double *band, int32_t *pivot);
-size_t rd_space_factor_complex(size_t lines, size_t size, double _Complex *band, int32_t *pivot);
+/* Such bands of real numbers, factored by columns (lines, size, rd_space_rows(width)) as LAPACK does;
+   pivot (lines, size). Returns the first that is singular, or `lines`. */
+size_t rd_space_factor(const struct rd_space_band *band, double *factor, int32_t *pivot);
 
 /* x (lines, columns, size): right sides, solved in place */
-void rd_space_solve(size_t lines, size_t size, size_t columns, const double *band,
+void rd_space_solve(size_t width, size_t lines, size_t size, size_t columns, const double *factor,
                     const int32_t *pivot, double *x);
-void rd_space_solve_complex(size_t lines, size_t size, size_t columns, const double _Complex *band,
-                            const int32_t *pivot, double _Complex *x);
 
-/* Eigenvalues below each lambda (count), counted in coordinates scaled by z (count, 6), u = z u^ and
+/* Right sides x (lines, columns, size) of bands of complex numbers, solved in place, several lines side
+   by side; not finite where one is singular. Takes what it needs from the workspace (with base NULL:
+   counts it). RD_NO_MEMORY where that is too small. */
+enum rd_status rd_space_respond(const struct rd_space_band *band, size_t columns,
+                                double _Complex *x, struct rd_workspace *workspace);
+
+/* Eigenvalues of a component below each lambda, both (count), counted in coordinates scaled by z (count, width), u = z u^ and
    f = f^/z, so that entries of E times a piece's length are of a size. NAN where joints between
    resonances leave more parts than are counted together. Takes what it needs from the workspace (with
    base NULL: counts it). RD_NO_MEMORY where that is too small. */
-enum rd_status rd_space_count(const struct rd_space *rope, size_t count, const double *lambda,
-                              const double *z, double *below, struct rd_workspace *workspace);
+enum rd_status rd_space_count(const struct rd_space *rope, size_t count, const int32_t *component,
+                              const double *lambda, const double *z, double *below,
+                              struct rd_workspace *workspace);
 
 #endif

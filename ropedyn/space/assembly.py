@@ -21,6 +21,7 @@ from ..base.errors import SolveError
 from .rope import Carried, Factors, SpaceRope, halvings, scaled_rates, size_of
 from .samples import coefficients, series_of
 
+ONE = np.zeros(1, dtype=np.intp)  # All six coordinates, of what is wound.
 GENTLE = 1.5  # The largest entry of a joint's inverse within a part.
 MOST_PARTS = 100_000
 
@@ -31,17 +32,17 @@ class Assembly:
 
     Attributes
     ----------
-    D, G, Q : ndarray of complex, shape (n, parts, 6, 6)
+    D, G, Q : ndarray of complex, shape (n, parts, width, width)
         F = 1 + D.
-    N : ndarray of complex, shape (n, parts + 1, 6, 6)
+    N : ndarray of complex, shape (n, parts + 1, width, width)
         Of the nodes.
-    held : ndarray of bool, shape (parts + 1, 6)
-    absent : ndarray of bool, shape (6,)
+    held : ndarray of bool, shape (n, parts + 1, width)
+    absent : ndarray of bool, shape (n, width)
     node : ndarray of int, shape (pieces + 1,)
         Where the nodes of the rope are.
     inner : ndarray of int, optional
         Where those of equal parts are, if the rope was divided for them.
-    z : ndarray, shape (n, 6)
+    z : ndarray, shape (n, width)
     doubt : ndarray, shape (n, parts + 1)
         What rounding may have done to N, where wires are carried.
     """
@@ -56,6 +57,16 @@ class Assembly:
     z: Real
     doubt: Real
     inner: Index | None = None
+
+    @property
+    def width(self) -> int:
+        """How many coordinates move together."""
+        return self.D.shape[2]
+
+    @property
+    def size(self) -> int:
+        """How many rows the band has."""
+        return (2 * self.parts + 1) * self.width
 
     @property
     def parts(self) -> int:
@@ -88,25 +99,34 @@ class Assembly:
         return Blocks(D, G, Q, N, self.held, 0.0)
 
     def together(self, u: Any, f: Any) -> Any:
-        """Return rows in the order of the band, from (n, parts + 1, 6, c) and (n, parts, 6, c)."""
+        """Return rows in the order of the band, of (n, parts + 1 and parts, width, c)."""
         both = np.zeros((len(u), 2 * self.parts + 1, *u.shape[2:]), dtype=np.result_type(u, f))
         both[:, ::2], both[:, 1::2] = u, f
         return both.reshape(len(u), -1, u.shape[-1])
 
     def apart(self, x: Any) -> tuple[Any, Any]:
         """Return motion and force."""
-        both = x.reshape(len(x), 2 * self.parts + 1, 6, -1)
+        both = x.reshape(len(x), 2 * self.parts + 1, self.width, -1)
         return both[:, ::2], both[:, 1::2]
 
-    def factored(self, *, real: bool = False) -> Factored:
-        """Return all lines factored."""
-        D, G, Q, N = self.real[:4] if real else (self.D, self.G, self.Q, self.N)
-        fixed = np.zeros((2 * self.parts + 1, 6), dtype=np.uint8)
-        fixed[::2], fixed[1::2] = self.held, self.absent
-        lu, pivot, failed = _core.space_factor(D, G, Q, N, fixed.ravel())
+    @property
+    def fixed(self) -> Any:
+        """Rows of the band that stand for nothing, shape (n, size)."""
+        both = np.zeros((len(self.D), 2 * self.parts + 1, self.width), dtype=np.uint8)
+        both[:, ::2], both[:, 1::2] = self.held, self.absent[:, None]
+        return both.reshape(len(both), -1)
+
+    def factored(self) -> Factored:
+        """Return the real parts of all lines factored."""
+        lu, pivot, failed = _core.space_factor(*self.real[:4], self.fixed)
         if failed < len(lu):
-            raise Singular(failed)
+            raise SolveError("singular")
         return Factored(lu, pivot)
+
+    def respond(self, right: Any) -> Complex:
+        """Return the solutions of columns (n, rows, columns), not finite where singular."""
+        x = _core.space_respond(self.D, self.G, self.Q, self.N, self.fixed, right.swapaxes(1, 2))
+        return x.swapaxes(1, 2)
 
 
 class Blocks(NamedTuple):
@@ -120,7 +140,7 @@ class Blocks(NamedTuple):
     one: float
 
     def apply(self, u: Real, f: Real) -> tuple[Real, Real]:
-        """Return p and d of motion (n, parts + 1, 6, columns) and force (n, parts, 6, columns)."""
+        """Return p and d of motion (n, parts + 1, width, columns) and force."""
         d = -(self.D @ u[:, :-1] + self.G @ f)
         p = self.N @ u
         p[:, :-1] += self.Q @ u[:, :-1] - self.D.swapaxes(2, 3) @ f
@@ -128,21 +148,8 @@ class Blocks(NamedTuple):
             d += u[:, 1:] - u[:, :-1]
             p[:, 1:] += f
             p[:, :-1] -= f
-        p[:, self.held] = 0.0
+        p[self.held] = 0.0
         return p, d
-
-
-class Singular(SolveError):
-    """A matrix that is singular.
-
-    Attributes
-    ----------
-    line : int
-    """
-
-    def __init__(self, line: int) -> None:
-        super().__init__("singular")
-        self.line = line
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,44 +165,52 @@ class Factored:
         return x.swapaxes(1, 2)
 
 
-def assemble(rope: SpaceRope, factors: Factors, z: Real, *, equal: int = 1) -> Assembly:
-    """Return the parts at each line: so many equal ones of each piece, or more within them."""
+def assemble(
+    rope: SpaceRope, which: Index, factors: Factors, z: Real, *, equal: int = 1
+) -> Assembly:
+    """Return the parts of a component at each line: so many equal ones of each piece, or more.
+
+    which : (n,) or (1,) where it is the same at all n lines.
+    """
     if equal > 1 and rope.bend.shape[1] > 1:
         divided = rope.divided(equal)
-        whole = assemble(divided, factors, z)
+        whole = assemble(divided, which, factors, z)
         return replace(whole, node=whole.node[::equal], inner=whole.node)
-    rates = scaled_rates(rope.rates(factors), z)
+    rates = scaled_rates(rope.rates(which, factors), z)
     size = size_of(rates).max(axis=(0, 2))
-    by = rope.turn * (z[:, None, None, :] / z[:, None, :, None]) - np.eye(6)
+    width, blocks = z.shape[1], rope.blocks
+    by = blocks.turn[which] * (z[:, None, None, :] / z[:, None, :, None]) - np.eye(width)
     triples, counts = [], []
     for p, length in enumerate(rope.length / equal):
         one = np.ascontiguousarray(coefficients(rates[:, p]))
         halved = int(halvings(max(size[p] * length, rope.least_radians[p])))
-        triple = parts_of(one, float(length), halved)
-        many = equal * triple.shape[1]
-        counts.append(many)
+        triple, alike = parts_of(one, float(length), halved)
+        triples.append(triple)
+        counts.append(equal * alike * triple.shape[1])
         if sum(counts) > MOST_PARTS:
             raise SolveError("the waves are too short for the rope: more than 100000 parts")
-        alike = np.repeat(triple, many // triple.shape[1], axis=1)
-        # F R and R^T Q R of what begins with a kink
-        D, Q, turn = alike[:, 0, 0], alike[:, 0, 2], by[:, p]
-        back = turn.swapaxes(1, 2)
-        alike[:, 0, 0] = turn + D + D @ turn
-        alike[:, 0, 2] = Q + back @ Q + Q @ turn + back @ Q @ turn
-        triples.append(alike)
     node = np.concatenate([[0], np.cumsum(counts)])
-    N = np.zeros((len(rates), node[-1] + 1, 6, 6), dtype=np.complex128)
-    N[:, node] = rope.nodes(factors) * (z[:, None, :, None] * z[:, None, None, :])
+    D, G, Q = matrices = np.empty((3, len(rates), node[-1], width, width), np.complex128)
+    for p, (first, triple) in enumerate(zip(node[:-1], triples)):
+        # parts that are alike are one, or all that lie one after another are there
+        matrices[:, :, first : node[p + 1]] = np.moveaxis(triple, 2, 0)
+        if by[:, p].any():
+            # F R and R^T Q R of what begins with a kink
+            turn, back = by[:, p], by[:, p].swapaxes(1, 2)
+            D[:, first] = turn + D[:, first] + D[:, first] @ turn
+            own = Q[:, first]
+            Q[:, first] = own + back @ own + own @ turn + back @ own @ turn
+    N = np.zeros((len(rates), node[-1] + 1, width, width), dtype=np.complex128)
+    N[:, node] = rope.nodes(which, factors) * (z[:, None, :, None] * z[:, None, None, :])
     doubt = np.zeros(N.shape[:2])
     for wire in rope.carried:
         foot, at = foot_of(wire, factors), node[wire.node]
         N[:, at] += foot.stiffness * (z[:, :, None] * z[:, None, :])
         doubt[:, at] += (foot.doubt * (z[:, :, None] * z[:, None, :])).max((1, 2))
-    held = np.zeros((node[-1] + 1, 6), dtype=bool)
-    held[node] = rope.held
-    held[:, rope.absent] = True
-    D, G, Q = np.concatenate(triples, axis=1).transpose(2, 0, 1, 3, 4)
-    return Assembly(D, G, Q, N, held, rope.absent, node, z, doubt)
+    absent = np.broadcast_to(blocks.absent[which], z.shape)
+    held = np.tile(absent[:, None], (1, node[-1] + 1, 1))
+    held[:, node] |= blocks.held[which]
+    return Assembly(D, G, Q, N, held, absent, node, z, doubt)
 
 
 class Foot(NamedTuple):
@@ -211,15 +226,15 @@ def foot_of(carried: Carried, factors: Factors) -> Foot:
     """Solve a wire whose left end moves by each coordinate, its right end free."""
     one = np.ones_like(factors.inertia)
     own = Factors(one + 1j * carried.loss * factors.loss, one, one, factors.inertia, 0 * one, one)
-    z = carried.rope.scale(np.abs(factors.inertia))
-    system = assemble(carried.rope, own, z)
+    z = carried.rope.scale(ONE, np.abs(factors.inertia))
+    system = assemble(carried.rope, ONE, own, z)
     count, D, Q = len(z), system.D[:, 0], system.Q[:, 0]
     p = np.zeros((count, system.parts + 1, 6, 7), dtype=np.complex128)
     d = np.zeros((count, system.parts, 6, 7), dtype=np.complex128)
     # u_1 - G f_0 = F u_0 of the left end's motion, and a load along the aim
     d[:, 0, :, :6] = np.eye(6) + D
     p[:, -1, :, 6] = carried.aim * z
-    u, f = system.apart(system.factored().solve(system.together(p, d)))
+    u, f = system.apart(system.respond(system.together(p, d)))
     u[:, 0, :, :6] = np.eye(6)
     # f_-1 is what the left end asks for
     force = Q @ u[:, 0] - f[:, 0] - D.swapaxes(1, 2) @ f[:, 0]
@@ -249,13 +264,15 @@ def bound(system: Assembly, one: tuple[Any, Any], other: tuple[Any, Any]) -> Rea
     return limit
 
 
-def parts_of(rates: Complex, length: float, halved: int) -> Complex:
-    """Return triples (n, parts, 3, 6, 6) of a piece, all below their own resonances."""
+def parts_of(rates: Complex, length: float, halved: int) -> tuple[Complex, int]:
+    """Return triples (n, parts, 3, width, width) of a piece, and of how many each is one.
+
+    All are below their own resonances.
+    """
     series = series_of(length, halved, rates.shape[1])
     most = halved
     while True:
-        triple, reached = _core.space_triples(rates, series, length, halved, most, GENTLE)
-        if reached == most:
-            alike = 1 << (halved - most) if len(series) == 1 else 1
-            return np.repeat(triple, alike, axis=1)
+        triple, reached, whole = _core.space_triples(rates, series, length, halved, most, GENTLE)
+        if whole:
+            return triple, 1 << (halved - reached) if len(series) == 1 else 1
         most = int(reached)

@@ -26,7 +26,7 @@ from ..scene.scene import Scene
 from .compile import rope_of_scene
 from .modes import solve_modes
 from .response import solve_frf
-from .rope import SpaceRope
+from .rope import SIX, SpaceRope
 from .shape import ShapeInSpace
 from .spectrum import count_below
 from .static import solve_static
@@ -43,11 +43,12 @@ ELSEWHERE = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SpaceModel(Frozen):
-    """A rope on an axis in space, or with torque: all six coordinates, exact at each frequency.
+    """A rope on an axis in space, or with torque, exact at each frequency.
 
-    Made by `Scene.compile`. Along a catenary or a twisted strip blocks are followed by polynomials.
-    Coordinates at s, the arc length from the left end, are along the frame of the axis there; at a
-    joint of two pieces along that on its left.
+    Made by `Scene.compile`. All six coordinates are solved together, or three and three where the
+    axis is plane and nothing ties its planes. Along a catenary or a twisted strip blocks are
+    followed by polynomials. Coordinates at s, the arc length from the left end, are along the frame
+    of the axis there; at a joint of two pieces along that on its left.
 
     Attributes
     ----------
@@ -98,9 +99,11 @@ class SpaceModel(Frozen):
         >>> arc = rd.Axis.arc(1.0, 2.0)
         >>> rope = rd.Rope(arc, 0.5, bending_stiffness=50.0, torsional_stiffness=30.0)
         >>> rd.Scene(rope, planes="both").compile().components
-        (('x', 'y', 'z', 'alpha', 'beta', 'gamma'),)
+        (('x', 'z', 'beta'), ('y', 'alpha', 'gamma'))
         """
-        return (self.coordinates,)
+        there = ~self.rope.absent
+        every = (tuple(SIX[c] for c in own if there[c]) for own in self.rope.own)
+        return tuple(one for one in every if one)
 
     @property
     def element(self) -> str:

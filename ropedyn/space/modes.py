@@ -118,14 +118,15 @@ class SpaceShapes:
         self, scene: Scene, rope: SpaceRope, eigenvalue: Real, found: Lowest, points: int
     ) -> None:
         self.scene, self.rope, self.points = scene, rope, points
-        self.eigenvalue, self.error = eigenvalue, found.error
+        self.eigenvalue, self.error, self.component = eigenvalue, found.error, found.component
 
     def clusters(self) -> Iterator[Index]:
         """Yield the numbers of modes that are found together."""
-        value, near = self.eigenvalue, TOGETHER * np.abs(self.eigenvalue) + self.error
-        if len(value):
-            parts = np.flatnonzero(np.diff(value) > near[1:] + near[:-1]) + 1
-            yield from np.split(np.arange(len(value)), parts)
+        for component in np.unique(self.component):
+            own = np.flatnonzero(self.component == component)
+            value = self.eigenvalue[own]
+            near = TOGETHER * np.abs(value) + self.error[own]
+            yield from np.split(own, np.flatnonzero(np.diff(value) > near[1:] + near[:-1]) + 1)
 
     @computed
     def solved(self) -> tuple[Real, dict[str, Real]]:
@@ -141,15 +142,19 @@ class SpaceShapes:
             spread = np.array([np.ptp(self.eigenvalue[one]) for one in clusters])
             near = BESIDE_FEET if self.rope.carried else BESIDE
             beside = np.maximum(8 * spread, near * np.maximum(np.abs(means), self.rope.unit))
-            z = self.rope.scale(means)
-            system = assemble(self.rope, unforced(means + beside, STEP), z, equal=self.points)
+            which = self.component[[one[0] for one in clusters]]
+            z = self.rope.scale(which, means)
+            factors = unforced(means + beside, STEP)
+            system = assemble(self.rope, which, factors, z, equal=self.points)
             sizes = [len(one) for one in clusters]
             own = self._found(system, sizes)
             u, _ = system.apart(own)
             u = z[:, None, :, None] * u[:, system.shown(self.points)]
-            forms = {k: self._form(one, means, z, own) for k, one in variants.items()}
+            lines = which, unforced(means), z
+            forms = {k: self._form(one, lines, own) for k, one in variants.items()}
             for k, cluster in enumerate(clusters):
-                shape[cluster] = u[k, :, :, : len(cluster)].transpose(2, 0, 1)
+                moves = self.rope.own[which[k]]
+                shape[cluster[:, None], :, moves] = u[k, :, :, : len(cluster)].transpose(2, 1, 0)
                 for name, form in forms.items():
                     energy[name][cluster] = form[k, : len(cluster)]
         return shape, energy
@@ -158,7 +163,7 @@ class SpaceShapes:
         """Refuse shapes of modes in which wires move and their feet do not."""
         sides = self.eigenvalue[:, None] * (1 + STILL * np.array([-1.0, 1.0]))
         for one in self.rope.carried:
-            held = counts_at(one.rope, sides.ravel()).reshape(-1, 2)
+            held = counts_at(one.rope, np.zeros(sides.size, np.intp), sides.ravel()).reshape(-1, 2)
             still = np.flatnonzero(held[:, 0] != held[:, 1])
             if len(still):
                 raise SolveError(
@@ -225,9 +230,9 @@ class SpaceShapes:
             for name, owns in zip(CARRIED, (softer, heavier, losing))
         }
 
-    def _form(self, varied: SpaceRope, eigenvalue: Real, z: Real, own: Real) -> Real:
+    def _form(self, varied: SpaceRope, lines: Any, own: Real) -> Real:
         """Return what an imaginary part adds to x^T A x of vectors (n, rows, columns)."""
-        system = assemble(varied, unforced(eigenvalue), z, equal=self.points)
+        system = assemble(varied, *lines, equal=self.points)
         added = system.together(*system.imag.apply(*system.apart(own)))
         form: Real = (own * added).sum(1) / STEP
         return form

@@ -19,6 +19,7 @@ FOLLOWED = 1e-11
 """The last two coefficients of what changes along a piece, relative, which a polynomial is cut at.
 
 Frequencies of catenaries and strips were 5e-14 off with them at most."""
+ROUNDED = 2e-15  # Cosines that are less are 0 but for rounding.
 FINER = 1e-14  # The same of a rope that others are held against.
 
 
@@ -112,7 +113,8 @@ def moment_at_rest(
 def kink_of(turn: Real) -> Real:
     """Return what a rotation of vectors does to the six coordinates."""
     both = np.zeros((6, 6))
-    both[:3, :3] = both[3:, 3:] = turn
+    # what frames leave of a zero would tie the planes of a plane curve
+    both[:3, :3] = both[3:, 3:] = np.where(np.abs(turn) > ROUNDED, turn, 0.0)
     return SIGN @ both @ SIGN
 
 

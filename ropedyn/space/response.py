@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from ..base import check
 from ..base.answer import Cost
 from ..base.array import Complex, Index, Real
-from ..base.computed import Late
+from ..base.computed import Late, computed
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES, WIRE
 from ..chain.port import Point
@@ -19,7 +20,7 @@ from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ..scene import damping
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.scene import Scene
-from .assembly import Assembly, Singular, assemble, bound, foot_of
+from .assembly import Assembly, assemble, bound, foot_of
 from .compile import finer_rope
 from .rope import SIX, Factors, SpaceRope
 
@@ -84,7 +85,7 @@ def solve_frf(
             "sweep",
             len(rope.length),
             rope.unknowns,
-            factorisations=len(f),
+            factorisations=len(f) * len(asked.components),
         ),
         rounding=Late(rounding),
         mesh=mesh,
@@ -96,7 +97,18 @@ def _refuse_rates() -> Any:
     raise SceneError("derivatives are not carried for a rope on an axis: the rope must be straight")
 
 
-class Request(NamedTuple):
+class AskedPart(NamedTuple):
+    """What of a request moves together."""
+
+    which: Index  # (1,)
+    own: list[str]  # its coordinates
+    pairs: Any  # its drives and responses in the answer
+    node: list[Index]  # of drives and of responses
+    point: list[list[Point]]
+
+
+@dataclass(frozen=True)
+class Request:
     """What is asked for: a rope with nodes at the points, and the lines."""
 
     rope: SpaceRope
@@ -128,62 +140,82 @@ class Request(NamedTuple):
 
     def receptance(self) -> Complex:
         """Return motion per unit force, shape (drives, responses, f)."""
-        shape = len(self.node[0]), len(self.node[1]), len(self.frequency)
-        value = np.zeros(shape, dtype=np.complex128)
-        for lines, system in self._systems():
-            motion, _ = self._solved(system, lines, 0)
-            row, _ = self._rows(system, lines, 1)
-            seen = np.einsum("lrc,lrcd->drl", row, motion[:, system.node[self.node[1]]])
-            value[:, :, lines] = seen
+        value = np.zeros(self._shape, dtype=np.complex128)
+        for side, lines, system in self._systems():
+            motion, _ = self._solved(system, side, lines, 0)
+            row, _ = self._rows(system, side, lines, 1)
+            seen = np.einsum("lrc,lrcd->drl", row, motion[:, system.node[side.node[1]]])
+            value[(*side.pairs, lines)] = seen
         return value
 
     def rounding(self) -> Real:
         """Estimate what rounding does to it: |x|^T |dA| |y| of motion by drives and responses."""
-        limit = np.zeros((len(self.node[0]), len(self.node[1]), len(self.frequency)))
-        for lines, system in self._systems():
-            one, other = (self._solved(system, lines, i) for i in (0, 1))
-            _, doubt = self._rows(system, lines, 1)
-            moved = np.abs(one[0][:, system.node[self.node[1]]])
-            limit[:, :, lines] = bound(system, one, other).transpose(1, 2, 0)
-            limit[:, :, lines] += np.einsum("lrc,lrcd->drl", doubt, moved)
+        limit = np.zeros(self._shape)
+        for side, lines, system in self._systems():
+            one, other = (self._solved(system, side, lines, i) for i in (0, 1))
+            _, doubt = self._rows(system, side, lines, 1)
+            moved = np.abs(one[0][:, system.node[side.node[1]]])
+            seen = np.einsum("lrc,lrcd->drl", doubt, moved)
+            limit[(*side.pairs, lines)] = bound(system, one, other).transpose(1, 2, 0) + seen
         return limit
 
-    def _systems(self) -> Any:
-        for first in range(0, len(self.frequency), AT_ONCE):
-            lines = slice(first, first + AT_ONCE)
-            factors = Factors(*(one[lines] for one in self.factors))
-            yield lines, assemble(self.rope, factors, self.rope.scale(np.abs(factors.inertia)))
+    @property
+    def _shape(self) -> tuple[int, int, int]:
+        return len(self.node[0]), len(self.node[1]), len(self.frequency)
 
-    def _solved(self, system: Assembly, lines: slice, side: int) -> tuple[Complex, Complex]:
+    @computed
+    def components(self) -> list[AskedPart]:
+        """Those that are driven and watched."""
+        found = []
+        for k, along in enumerate(self.rope.own):
+            own = [SIX[c] for c in along]
+            # where a wire is, all six are one component
+            at = [[i for i, (c, _) in enumerate(of) if c in (*own, WIRE)] for of in self.point]
+            if all(at):
+                node = [one[there] for one, there in zip(self.node, at)]
+                point = [[of[i] for i in there] for of, there in zip(self.point, at)]
+                found.append(AskedPart(np.array([k]), own, np.ix_(*at), node, point))
+        return found
+
+    def _systems(self) -> Iterator[tuple[AskedPart, slice, Assembly]]:
+        for side in self.components:
+            for first in range(0, len(self.frequency), AT_ONCE):
+                lines = slice(first, first + AT_ONCE)
+                factors = Factors(*(one[lines] for one in self.factors))
+                z = self.rope.scale(side.which, np.abs(factors.inertia))
+                yield side, lines, assemble(self.rope, side.which, factors, z)
+
+    def _solved(
+        self, system: Assembly, side: AskedPart, lines: slice, end: int
+    ) -> tuple[Complex, Complex]:
         """Return motion and force of unit loads on drives (0) or responses (1)."""
-        node, f = system.node[self.node[side]], self.frequency[lines]
-        n = len(system.D)
-        load = np.zeros((n, system.parts + 1, 6, len(node)), dtype=np.complex128)
-        row, _ = self._rows(system, lines, side)
+        node, n, f = system.node[side.node[end]], len(system.D), self.frequency[lines]
+        load = np.zeros((n, system.parts + 1, system.width, len(node)), dtype=np.complex128)
+        row, _ = self._rows(system, side, lines, end)
         load[:, node, :, np.arange(len(node))] = row.swapaxes(0, 1)
-        load[:, system.held] = 0.0
-        none = np.zeros((n, system.parts, 6, len(node)))
-        try:
-            x = system.factored().solve(system.together(load, none))
-            singular = np.flatnonzero(~np.isfinite(x).all(axis=(1, 2)))
-        except Singular as error:
-            singular = np.array([error.line])
+        load[system.held] = 0.0
+        none = np.zeros((n, system.parts, system.width, len(node)))
+        x = system.respond(system.together(load, none))
+        singular = np.flatnonzero(~np.isfinite(x).all(axis=(1, 2)))
         if len(singular):
             raise SolveError(
                 f"{f[singular[0]]:g} Hz lies on an undamped resonance: there is no finite response"
             )
         return system.apart(x)
 
-    def _rows(self, system: Assembly, lines: slice, side: int) -> tuple[Complex, Real]:
-        """Return what points see of their nodes, (n, points, 6), and what rounding does to it."""
-        row = np.zeros((len(system.z), len(self.point[side]), 6), dtype=np.complex128)
+    def _rows(
+        self, system: Assembly, side: AskedPart, lines: slice, end: int
+    ) -> tuple[Complex, Real]:
+        """Return what points see of their nodes, (n, points, width), and its rounding."""
+        points = side.point[end]
+        row = np.zeros((len(system.z), len(points), system.width), dtype=np.complex128)
         doubt = np.zeros(row.shape)
         factors = Factors(*(one[lines] for one in self.factors))
-        for k, (coordinate, at) in enumerate(self.point[side]):
+        for k, (coordinate, at) in enumerate(points):
             if coordinate == WIRE:
                 foot = foot_of(self.rope.carried[int(at)], factors)
                 row[:, k], doubt[:, k] = foot.seen * system.z, foot.seen_doubt * system.z
             else:
-                along = SIX.index(coordinate)
+                along = side.own.index(coordinate)
                 row[:, k, along] = system.z[:, along]
         return row, doubt

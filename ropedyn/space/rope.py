@@ -14,6 +14,10 @@ from .samples import coefficients, resampled, series_of
 
 SIX = ("x", "y", "z", "alpha", "beta", "gamma")
 
+ALL = np.arange(6)[None]
+PLANES = np.array([[0, 2, 4], [1, 3, 5]])
+"""Coordinates that move together where a curve is plane and nothing ties its planes."""
+
 SIGN = np.diag([1.0, 1.0, 1.0, 1.0, -1.0, 1.0])
 """Between coordinates and vectors along x, y, z: beta = -theta_y, M_beta = -m_y."""
 
@@ -112,6 +116,26 @@ class SpaceRope:
         """How many coordinates of nodes can move."""
         return int((~self.held).sum())
 
+    @computed
+    def own(self) -> Index:
+        """Coordinates of each component, shape (components, width): all six, or three and three."""
+        inside, across = PLANES
+        ties = (np.s_[..., inside[:, None], across], np.s_[..., across[:, None], inside])
+        tied = any(getattr(self, name)[tie].any() for name in MATRICES for tie in ties)
+        return ALL if tied or self.carried else PLANES
+
+    @computed
+    def blocks(self) -> OwnMatrices:
+        """The matrices of each component, the components before all else."""
+        own = self.own
+        rows, columns = own[:, :, None], own[:, None, :]
+        blocks = {
+            k: np.stack([getattr(self, k)[..., r, c] for r, c in zip(rows, columns)])
+            for k in MATRICES
+        }
+        held, absent = self.held[:, own].swapaxes(0, 1), self.absent[own]
+        return OwnMatrices(**blocks, held=held, absent=absent)
+
     def has_inertia(self, coordinates: tuple[str, ...]) -> bool:
         """Whether any of some coordinates has inertia."""
         at = [SIX.index(c) for c in coordinates]
@@ -147,19 +171,24 @@ class SpaceRope:
         x = (self.x[:-1, None] + inside).ravel()
         return self.cut(x[1:], 0.1 * float(self.length.min()) / equal)[0]
 
-    def rates(self, factors: Factors) -> Complex:
-        """Return Phi, S and q, shape (n, pieces, samples, 3, 6, 6)."""
+    def rates(self, which: Index, factors: Factors) -> Complex:
+        """Return Phi, S and q of components at lines, (n, pieces, samples, 3, width, width)."""
         section, tension, _, inertia, drag = (of_lines(one)[..., None] for one in factors[:5])
-        initial, S = tension * self.initial, self.soft / section + self.string / tension
+        own = self.blocks
+        initial = tension * own.initial[which]
+        S = own.soft[which] / section + own.string[which] / tension
         SH = S @ initial
-        q = tension * self.stress - initial.swapaxes(3, 4) @ SH
-        q = q + inertia * self.inertia[:, None] + drag * self.drag[:, None]
-        return np.stack(np.broadcast_arrays(self.bend + SH, S + 0j, q), axis=3)
+        q = tension * own.stress[which] - initial.swapaxes(3, 4) @ SH
+        q = q + inertia * own.inertia[which][:, :, None] + drag * own.drag[which][:, :, None]
+        return np.stack(np.broadcast_arrays(own.bend[which] + SH, S + 0j, q), axis=3)
 
-    def nodes(self, factors: Factors) -> Complex:
-        """Return the stiffness of what stands at the nodes, shape (n, pieces + 1, 6, 6)."""
+    def nodes(self, which: Index, factors: Factors) -> Complex:
+        """Return the stiffness of what stands at the nodes, shape (n, pieces + 1, width, width)."""
         _, _, springs, inertia, drag = (of_lines(one) for one in factors[:5])
-        return springs * self.springs + inertia * self.masses + drag * self.dashpots
+        own = self.blocks
+        return (
+            springs * own.springs[which] + inertia * own.masses[which] + drag * own.dashpots[which]
+        )
 
     @computed
     def softest(self) -> tuple[float, float]:
@@ -200,8 +229,8 @@ class SpaceRope:
         bent = np.abs(self.bend[..., :3, :3]).max(axis=(1, 2, 3))
         return float(((bent @ self.length) ** 2 + 1) / self.length.sum() ** 2)
 
-    def scale(self, eigenvalue: ArrayLike) -> Real:
-        """Return z (n, 6), u = z u^ and f = f^/z, so that what a wave does is of size 1."""
+    def scale(self, which: Index, eigenvalue: ArrayLike) -> Real:
+        """Return z (n, width), u = z u^ and f = f^/z, so that what a wave does is of size 1."""
         # z^2 is the receptance of a long straight beam of wavenumbers k and a, 1/(B k (k^2 + a^2))
         # across it and 1/(B a) of rotation, of a string 1/(T k); none of these wavenumbers is less
         # than curvature and length tell
@@ -217,35 +246,63 @@ class SpaceRope:
         else:
             across = self.softest[1] / np.sqrt(load * self.softest[1] + least)
             turned = np.ones_like(across)
-        return np.repeat(np.sqrt(np.stack([across, turned], axis=-1)), 3, axis=-1)
+        z = np.sqrt(np.stack([across, turned], axis=-1))
+        return np.take_along_axis(z, self.own[which] // 3, axis=-1)
 
     @computed
     def at_rest(self) -> Real:
-        """Phi, S and q where nothing moves, shape (pieces, samples, 3, 6, 6)."""
-        return np.ascontiguousarray(self.rates(unforced([0.0]))[0].real)
+        """Phi, S and q where nothing moves, of each component as `rates` of a line."""
+        every = np.arange(len(self.own))
+        return np.ascontiguousarray(self.rates(every, unforced([0.0] * len(every))).real)
 
     @computed
     def least_radians(self) -> Real:
         """What pieces count as at least, so that the series of what changes converge, (pieces,)."""
         return self.share * (RADIANS * PARTS if self.changes else 0.0)
 
-    def core(self, eigenvalues: Real) -> tuple[tuple[Any, ...], Real]:
-        """Return what the core counts at several eigenvalues by, and the scale of each."""
-        z, samples = self.scale(eigenvalues), self.bend.shape[1]
-        rates = np.tile(self.at_rest, (len(z), 1, 1, 1, 1, 1))
-        rates[:, :, :, 2] -= eigenvalues[:, None, None, None, None] * self.inertia[:, None]
+    @computed
+    def alike(self) -> tuple[Any, ...]:
+        """What the core counts by that no eigenvalue changes."""
+        one = self.blocks
+        beside = one.inertia, one.turn, one.springs, one.masses, one.held.astype(np.uint8)
+        return (coefficients(self.at_rest), *(np.ascontiguousarray(array) for array in beside))
+
+    def core(self, which: Index, eigenvalues: Real) -> tuple[tuple[Any, ...], Real]:
+        """Return what the core counts components by at eigenvalues, and the scale of each."""
+        z, samples = self.scale(which, eigenvalues), self.bend.shape[1]
+        rates = self.at_rest[which]
+        inertia = self.blocks.inertia[which]
+        rates[:, :, :, 2] -= eigenvalues[:, None, None, None, None] * inertia[:, :, None]
         radians = size_of(scaled_rates(rates, z)).max(axis=(0, 2)) * self.length
         halved = halvings(np.maximum(radians, self.least_radians))
         series = [series_of(*one, samples) for one in zip(self.length, halved)]
         nodes = np.array([len(one) for one in series], dtype=np.int32)
-        fields = coefficients(self.at_rest)
-        beside = (self.inertia, self.turn, self.springs, self.masses, self.held.astype(np.uint8))
+        fields, *beside = self.alike
         return (self.length, halved, nodes, fields, np.concatenate(series), *beside), z
 
 
 SAMPLED = ("bend", "soft", "string", "initial", "stress")
 PIECEWISE = ("inertia", "drag")
 NODAL = ("springs", "masses", "dashpots", "held")
+MATRICES = (*SAMPLED, *PIECEWISE, "turn", *NODAL[:3])
+
+
+class OwnMatrices(NamedTuple):
+    """Matrices (components, .., width, width) of what moves together, as those of the rope."""
+
+    bend: Matrices
+    soft: Matrices
+    string: Matrices
+    initial: Matrices
+    stress: Matrices
+    inertia: Matrices
+    drag: Matrices
+    turn: Matrices
+    springs: Matrices
+    masses: Matrices
+    dashpots: Matrices
+    held: Flags
+    absent: Flags
 
 
 def unforced(eigenvalue: Real | list[float], step: float = 0.0) -> Factors:

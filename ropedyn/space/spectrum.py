@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import _core
-from ..base.array import Real
+from ..base.array import Index, Real
 from ..base.errors import SolveError
 from .assembly import ROUNDINGS, Assembly, assemble, foot_of
 from .rope import SPRINGS, SpaceRope, unforced
@@ -29,16 +29,18 @@ MORE = 3  # Vectors beside those of the modes that are sought.
 
 
 class Lowest(NamedTuple):
-    """Eigenvalues [rad^2/s^2], estimates of what rounding does, and how many counts they took."""
+    """Eigenvalues [rad^2/s^2], bounds of what rounding does, whose they are, and counts taken."""
 
     eigenvalue: Real
     error: Real
+    component: Index
     counts: int
 
 
 class Bracket(NamedTuple):
-    """Values of which counts are known, and the modes between them."""
+    """Values of which counts of a component are known, and the modes between them."""
 
+    component: int
     low: float
     high: float
     first: int
@@ -65,114 +67,150 @@ class Bracket(NamedTuple):
 
 
 class Counter:
-    """Counts that are known, by increasing eigenvalue."""
+    """Counts of each component that are known, by increasing eigenvalue."""
 
     def __init__(self, rope: SpaceRope) -> None:
         self.rope = rope
-        self.values: list[float] = []
-        self.counts: list[int] = []
+        self.components = range(len(rope.own))
+        self.values: list[list[float]] = [[] for _ in self.components]
+        self.counts: list[list[int]] = [[] for _ in self.components]
         self.asked = 0
 
-    def ask(self, values: Any) -> list[int]:
-        """Count at several."""
-        new = np.array(sorted({float(v) for v in values} - set(self.values)))
+    def ask(self, asked: set[tuple[int, float]]) -> None:
+        """Count components below values, all at once."""
+        new = sorted((k, v) for k, v in asked if v not in self.values[k])
         for nudge in range(8):
-            if not len(new):
-                return [self.counts[bisect_left(self.values, float(v))] for v in values]
+            if not new:
+                return
+            which = np.array([k for k, _ in new])
+            value = np.array([v for _, v in new])
             # joints at a resonance of a part are none a little aside
-            counts = counts_at(self.rope, new * (1 + nudge * 2.0**-48))
+            counts = counts_at(self.rope, which, value * (1 + nudge * 2.0**-48))
             self.asked += len(new)
-            there = ~np.isnan(counts)
-            for value, count in zip(new[there].tolist(), counts[there].tolist()):
-                at = bisect_left(self.values, value)
-                self.values.insert(at, value)
-                self.counts.insert(at, int(count))
-            new = new[~there]
+            for (k, v), count in zip(new, counts.tolist()):
+                if not math.isnan(count):
+                    at = bisect_left(self.values[k], v)
+                    self.values[k].insert(at, v)
+                    self.counts[k].insert(at, int(count))
+            new = [one for one, count in zip(new, counts) if math.isnan(count)]
         raise SolveError("parts of the rope resonate too close to each other to be counted")
 
-    def bracket(self, i: int) -> Bracket:
+    def each(self, values: list[float]) -> list[list[int]]:
+        """Count every component below each of several values."""
+        self.ask({(k, v) for k in self.components for v in values})
+        return [
+            [self.counts[k][bisect_left(self.values[k], v)] for k in self.components]
+            for v in values
+        ]
+
+    def total(self, values: list[float]) -> list[int]:
+        """Count all below each of several values."""
+        return [sum(counts) for counts in self.each(values)]
+
+    def bracket(self, component: int, i: int) -> Bracket:
         """Return the closest values with count <= i and > i, and the counts."""
-        at = bisect_right(self.counts, i)
-        if any(a > b for a, b in pairwise(self.counts[max(at - 2, 0) : at + 2])):
+        values, counts = self.values[component], self.counts[component]
+        at = bisect_right(counts, i)
+        if any(a > b for a, b in pairwise(counts[max(at - 2, 0) : at + 2])):
             raise SolveError("counts contradict each other: rounding decides where modes are")
-        low, high = self.values[at - 1 : at + 1]
-        return Bracket(low, high, *self.counts[at - 1 : at + 1])
+        return Bracket(component, values[at - 1], values[at], counts[at - 1], counts[at])
 
 
-def counts_at(rope: SpaceRope, values: Real) -> Real:
-    """Count the eigenvalues below several, NaN where a part resonates there.
+def counts_at(rope: SpaceRope, which: Index, values: Real) -> Real:
+    """Count the eigenvalues of components below values, NaN where a part resonates there.
 
     Those of wires held at their feet, and those of a rope whose nodes have the stiffness of feet.
     """
-    arrays, z = rope.core(values)
+    arrays, z = rope.core(which, values)
+    own = which.astype(np.int32)
     if not rope.carried:
-        return np.asarray(_core.space_count(arrays, values, z))
+        return np.asarray(_core.space_count(arrays, own, values, z))
     springs, found = np.tile(rope.springs, (len(values), 1, 1, 1)), np.zeros(len(values))
     for one in rope.carried:
         springs[:, one.node] += foot_of(one, unforced(values)).stiffness.real
-        found += counts_at(one.rope, values)
-    for k, value in enumerate(values):
-        own = (*arrays[:SPRINGS], springs[k], *arrays[SPRINGS + 1 :])
-        found[k] += _core.space_count(own, np.array([value]), z[k : k + 1])[0]
+        found += counts_at(one.rope, which, values)
+    for k in range(len(values)):
+        line = slice(k, k + 1)
+        stiff = (*arrays[:SPRINGS], springs[line], *arrays[SPRINGS + 1 :])
+        found[k] += _core.space_count(stiff, own[line], values[line], z[line])[0]
     return found
 
 
 def count_below(rope: SpaceRope, eigenvalue: float) -> int:
     """Return how many eigenvalues lie below one."""
-    return Counter(rope).ask([eigenvalue])[0]
+    return Counter(rope).total([eigenvalue])[0]
 
 
 def lowest(rope: SpaceRope, wanted: int | None, below: float) -> Lowest:
-    """Return the lowest eigenvalues, so many or all below one."""
+    """Return the lowest eigenvalues, so many or all below one: of each component its own share."""
     counter, unit = Counter(rope), rope.unit
-    wanted = _surround(counter, unit, wanted, below)
-    value, error = np.full(wanted, math.nan), np.zeros(wanted)
-    _isolate(counter, range(wanted), unit)
-    while len(left := np.flatnonzero(np.isnan(value))):
-        groups = sorted({counter.bracket(int(i)) for i in left})
-        wide: list[int] = []
-        for group, found in zip(groups, refined(rope, groups, unit)):
-            if found is None and not group.is_narrow(unit):
-                wide += range(group.first, min(group.last, wanted))
+    wanted, high = _surround(counter, unit, wanted, below)
+    share = _shares(counter, unit, wanted, high)
+    modes = [(k, i) for k in counter.components for i in range(share[k])]
+    found: dict[tuple[int, int], tuple[float, float]] = {}
+    _isolate(counter, modes, unit)
+    while left := [one for one in modes if one not in found]:
+        groups = sorted({counter.bracket(*one) for one in left})
+        wide = []
+        for group, settled in zip(groups, refined(rope, groups, unit)):
+            if settled is None and not group.is_narrow(unit):
+                wide.append((group.component, group.first))
                 continue
-            size = min(group.last, wanted) - group.first
-            whole = found or (np.full(size, group.middle), np.full(size, group.high - group.low))
-            value[group.first :][:size], error[group.first :][:size] = (one[:size] for one in whole)
+            whole = settled or [
+                np.full(group.size, one) for one in (group.middle, group.high - group.low)
+            ]
+            for i, (value, error) in enumerate(zip(*whole)):
+                found[group.component, group.first + i] = value, error
         _divide(counter, wide, unit)
         if rope.carried:
             _narrow(counter, wide, unit)
-    return Lowest(value, error, counter.asked)
+    ordered = sorted(modes, key=found.__getitem__)[:wanted]
+    value, error = np.array([found[one] for one in ordered]).reshape(-1, 2).T
+    which = np.array([k for k, _ in ordered], dtype=np.intp)
+    return Lowest(value, error, which, counter.asked)
 
 
-def _narrow(counter: Counter, modes: list[int], unit: float) -> None:
+def _narrow(counter: Counter, modes: list[tuple[int, int]], unit: float) -> None:
     """Divide brackets until each is an answer: beside a pole of a foot no iteration is one."""
-    while wide := [i for i in modes if not counter.bracket(i).is_narrow(unit)]:
+    while wide := [one for one in modes if not counter.bracket(*one).is_narrow(unit)]:
         _divide(counter, wide, unit)
 
 
-def _surround(counter: Counter, unit: float, wanted: int | None, below: float) -> int:
-    """Count below all and above those that are wanted; return how many there are."""
+def _surround(counter: Counter, unit: float, wanted: int | None, below: float) -> tuple[int, float]:
+    """Count below all and above those that are wanted: how many there are, and below what."""
     low = -unit * 1e-3
-    while counter.ask([low])[0] > 0:
+    while counter.total([low])[0] > 0:
         low *= 64
         if not math.isfinite(low):
             raise SolveError("the stiffness has no lower bound: what is loaded has no mass")
     if math.isfinite(below):
-        there = counter.ask([below])[0]
-        return there if wanted is None else min(wanted, there)
+        there = counter.total([below])[0]
+        return (there if wanted is None else min(wanted, there)), below
     assert wanted is not None
     high = unit * max(1.0, (wanted / 4) ** 2)
-    while counter.ask([high, 4 * high])[1] < wanted:
+    while counter.total([high, 4 * high])[1] < wanted:
         high *= 16
         if high > 1e150 * unit:
             raise SolveError(f"fewer than {wanted} modes are finite")
-    return wanted
+    return wanted, 4 * high
 
 
-def _isolate(counter: Counter, modes: range, unit: float) -> None:
+def _shares(counter: Counter, unit: float, wanted: int, high: float) -> list[int]:
+    """Return how many of the lowest modes each component has; more where some are nearly equal."""
+    if len(counter.components) == 1:
+        return [wanted]
+    low = counter.values[0][0]
+    while counter.total([high])[0] > wanted and not _are_close(low, high, TOGETHER, unit):
+        places = [low, *_between(low, high, unit), high]
+        above = next(i for i, total in enumerate(counter.total(places)) if total >= wanted)
+        low, high = places[max(above - 1, 0)], places[max(above, 1)]
+    return counter.each([high])[0]
+
+
+def _isolate(counter: Counter, modes: list[tuple[int, int]], unit: float) -> None:
     """Divide brackets until each has a single mode or modes that are found together."""
     for _ in range(ROUNDS):
-        wide = [i for i in modes if not _is_done(counter.bracket(i), unit)]
+        wide = [one for one in modes if not _is_done(counter.bracket(*one), unit)]
         if not wide:
             return
         _divide(counter, wide, unit)
@@ -181,17 +219,26 @@ def _isolate(counter: Counter, modes: range, unit: float) -> None:
 
 def _is_done(bracket: Bracket, unit: float) -> bool:
     near = ALONE if bracket.size == 1 else TOGETHER
-    width = bracket.high - bracket.low
-    return width <= near * max(abs(bracket.low), abs(bracket.high)) or width <= 1e-6 * unit
+    return _are_close(bracket.low, bracket.high, near, unit)
 
 
-def _divide(counter: Counter, modes: list[int], unit: float) -> None:
+def _are_close(low: float, high: float, near: float, unit: float) -> bool:
+    return high - low <= max(near * max(abs(low), abs(high)), 1e-6 * unit)
+
+
+def _divide(counter: Counter, modes: list[tuple[int, int]], unit: float) -> None:
     """Count at three places in the bracket of each, which costs as much as at one."""
     asked = set()
-    for low, high, _, _ in {counter.bracket(i) for i in modes}:
-        middle = _middle(low, high, unit)
-        asked |= {_middle(low, middle, unit), middle, _middle(middle, high, unit)} - {low, high}
+    for component, low, high, _, _ in {counter.bracket(*one) for one in modes}:
+        asked |= {(component, value) for value in _between(low, high, unit)}
     counter.ask(asked)
+
+
+def _between(low: float, high: float, unit: float) -> list[float]:
+    """Return three places that divide a bracket, or those that rounding leaves."""
+    middle = _middle(low, high, unit)
+    places = {_middle(low, middle, unit), middle, _middle(middle, high, unit)}
+    return sorted(places - {low, high})
 
 
 def _middle(low: float, high: float, unit: float) -> float:
@@ -250,7 +297,8 @@ def refined(rope: SpaceRope, groups: list[Bracket], unit: float) -> list[tuple[R
             if not left:
                 break
             at = np.array([one.at for one in left])
-            system = assemble(rope, unforced(at, STEP), rope.scale(at))
+            which = np.array([one.bracket.component for one in left])
+            system = assemble(rope, which, unforced(at, STEP), rope.scale(which, at))
             x = start(system, max(one.bracket.size for one in left) + MORE, left)
             times = 3 if any(one.vectors is None for one in left) else 1
             found = ritz(system, x, [one.bracket.size for one in left], times)
@@ -262,7 +310,7 @@ def refined(rope: SpaceRope, groups: list[Bracket], unit: float) -> list[tuple[R
 
 def start(system: Assembly, columns: int, known: Any = ()) -> Real:
     """Return vectors (n, rows, columns): those found before, or some that no mode is free of."""
-    rows = (2 * system.parts + 1) * 6
+    rows = system.size
     fresh = np.random.default_rng(0).standard_normal((rows, columns))
     x = np.tile(fresh, (len(system.D), 1, 1))
     for k, one in enumerate(known):
@@ -286,7 +334,7 @@ def ritz(system: Assembly, x: Real, sizes: list[int], times: int = 3) -> list[Ne
     Of A(lambda) x = 0 about lambda: A x = shift M x with M = -dA/dlambda, which is what moves, so
     that the shifts of vectors between which nothing else lies are right to second order.
     """
-    factored, most = system.factored(real=True), max(sizes)
+    factored, most = system.factored(), max(sizes)
     for _ in range(times):
         x = factored.solve(mass(system, np.linalg.qr(x)[0]))
     x = np.linalg.qr(x)[0]

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..base import check
 from ..base.answer import Cost
-from ..base.array import Real
+from ..base.array import Index, Real
 from ..base.computed import Late
 from ..base.errors import SolveError
 from ..chain.port import Point
@@ -39,41 +38,92 @@ def solve_static(
     own, near = ~rope.absent, check.NEAR * scene.rope.length
     x = np.concatenate([within(rope.x, points or POINTS), [at for _, at in loads]])
     cut, _ = rope.cut(x, near)
-    x = cut.x
-    system, u, f = _under(cut, loads)
-    z = system.z[0]
-    shown = u[0, system.node, :, 0][:, own]
+    x, shape = cut.x, (len(cut.x), int(own.sum()))
+    solved = _under(cut, loads)
+    displacement, force = np.zeros((2, len(x), 6))
+    for one in solved:
+        displacement[:, one.own], force[:, one.own] = one.displacement, one.force
 
     def mesh() -> Real:
         finer = finer_rope(scene, rope)
         if finer is None:
-            return _same(shown.shape, 0.0)
+            return _same(shape, 0.0)
         other, node = finer.cut(x, near)
-        whole, v, _ = _under(other, loads)
-        return np.abs(shown * z[own] - v[0, whole.node[node], :, 0][:, own] * whole.z[0][own])
+        there = np.zeros_like(displacement)
+        for one in _under(other, loads):
+            there[:, one.own] = one.displacement[node]
+        return np.abs(displacement - there)[:, own]
+
+    def rounding() -> Real:
+        limit = np.zeros_like(displacement)
+        for one in solved:
+            limit[:, one.own] = one.rounding()
+        limit = limit[:, own]
+        limit.setflags(write=False)
+        return limit
 
     return Deflection(
         coordinates=rope.coordinates,
         x=x,
-        displacement=shown * z[own],
-        force=(_force(system, u[0], f[0]) / z)[:, own],
+        displacement=displacement[:, own],
+        force=force[:, own],
         load=tuple(loads.items()),
         critical_loads=critical,
-        cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=1, factorisations=1),
-        rounding_error=Late(partial(_rounding, system, (u, f))),
-        force_rounding_error=_same(shown.shape, np.inf),
+        cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=1, factorisations=len(solved)),
+        rounding_error=Late(rounding),
+        force_rounding_error=_same(shape, np.inf),
         mesh_error=Late(mesh),
     )
 
 
-def _under(rope: SpaceRope, loads: dict[Point, float]) -> tuple[Assembly, Real, Real]:
-    """Return the parts, their motion and force under loads at nodes."""
-    system = assemble(rope, unforced([0.0]), rope.scale([0.0]))
-    right = np.zeros((system.parts + 1, 6, 1))
-    for (coordinate, at), amount in loads.items():
-        k = SIX.index(coordinate)
-        right[system.node[int(np.abs(rope.x - at).argmin())], k] += amount * system.z[0, k]
-    return system, *_solved(system, right)
+class LoadedPart(NamedTuple):
+    """A component that is loaded: what motion and force it has."""
+
+    own: Index  # its coordinates
+    system: Assembly
+    u: Real
+    f: Real
+
+    @property
+    def displacement(self) -> Real:
+        """Of the nodes, shape (nodes, width)."""
+        return np.asarray(self.u[0, self.system.node, :, 0] * self.system.z[0])
+
+    @property
+    def force(self) -> Real:
+        """What the surroundings put on the nodes: f_b on the left less f_a on the right."""
+        D, Q, u, f = self.system.D[0].real, self.system.Q[0].real, self.u[0], self.f[0]
+        force = np.zeros(u.shape)
+        force[1:] += f
+        force[:-1] += Q @ u[:-1] - f - D.swapaxes(1, 2) @ f
+        return np.asarray(force[self.system.node, :, 0] / self.system.z[0])
+
+    def rounding(self) -> Real:
+        """Bound what rounding does to the displacement, shape (nodes, width)."""
+        system, nodes, w = self.system, len(self.system.node), self.system.width
+        unit = np.zeros((system.parts + 1, w, w * nodes))
+        along = np.tile(np.arange(w), nodes)
+        unit[np.repeat(system.node, w), along, np.arange(w * nodes)] = 1.0
+        limit = bound(system, (self.u, self.f), _solved(system, unit))[0, 0]
+        limit = limit.reshape(nodes, w) * system.z[0]
+        limit[system.held[0, system.node]] = 0.0
+        return limit
+
+
+def _under(rope: SpaceRope, loads: dict[Point, float]) -> list[LoadedPart]:
+    """Return the components that loads at nodes move."""
+    found = []
+    for k, own in enumerate(rope.own):
+        which = np.array([k])
+        system = assemble(rope, which, unforced([0.0]), rope.scale(which, [0.0]))
+        right = np.zeros((system.parts + 1, system.width, 1))
+        for (coordinate, at), amount in loads.items():
+            along = np.flatnonzero(own == SIX.index(coordinate))
+            node = system.node[int(np.abs(rope.x - at).argmin())]
+            right[node, along] += amount * system.z[0, along, None]
+        if right.any():
+            found.append(LoadedPart(own, system, *_solved(system, right)))
+    return found
 
 
 def _same(shape: tuple[int, ...], value: float) -> Real:
@@ -84,10 +134,10 @@ def _same(shape: tuple[int, ...], value: float) -> Real:
 
 def _solved(system: Assembly, right: Real) -> tuple[Real, Real]:
     """Return motion and force of columns of loads (parts + 1, 6, columns)."""
-    right = np.where(system.held[:, :, None], 0.0, right)[None]
-    none = np.zeros((1, system.parts, 6, right.shape[3]))
+    right = np.where(system.held[0, :, :, None], 0.0, right)[None]
+    none = np.zeros((1, system.parts, system.width, right.shape[3]))
     try:
-        x = system.factored(real=True).solve(system.together(right, none))
+        x = system.factored().solve(system.together(right, none))
     except SolveError:
         x = np.full((1, 1, 1), np.nan)
     if not np.isfinite(x).all() or np.abs(x).max() > 1e14 * np.abs(right).max():
@@ -96,24 +146,3 @@ def _solved(system: Assembly, right: Real) -> tuple[Real, Real]:
             "compression is critical"
         )
     return system.apart(x)
-
-
-def _force(system: Assembly, u: Real, f: Real) -> Real:
-    """Return what the surroundings put on the nodes: f_b on the left less f_a on the right."""
-    D, Q = system.D[0].real, system.Q[0].real
-    force = np.zeros(u.shape)
-    force[1:] += f
-    force[:-1] += Q @ u[:-1] - f - D.swapaxes(1, 2) @ f
-    return force[system.node, :, 0]
-
-
-def _rounding(system: Assembly, found: tuple[Real, Real]) -> Real:
-    """Bound what rounding does to the displacement, shape (nodes, 6)."""
-    nodes = len(system.node)
-    unit = np.zeros((system.parts + 1, 6, 6 * nodes))
-    unit[np.repeat(system.node, 6), np.tile(np.arange(6), nodes), np.arange(6 * nodes)] = 1.0
-    limit = bound(system, found, _solved(system, unit))[0, 0].reshape(nodes, 6) * system.z[0]
-    limit[system.held[system.node]] = 0.0
-    limit = limit[:, ~system.absent]
-    limit.setflags(write=False)
-    return limit

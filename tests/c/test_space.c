@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIX = RD_SIX, FULL = RD_SIX * RD_SIX, LINES = 9 };
+enum { SIX = RD_SIX, FULL = RD_SIX * RD_SIX, TRIPLE = 3 * FULL, LINES = 9 };
 
 static const double PI = 3.14159265358979323846;
 
@@ -30,29 +30,30 @@ static void test_triple_of_a_beam_at_rest(void)
 {
     const double l = 3;
     double phi[FULL], soft[FULL], load[FULL], inertia[FULL];
-    double _Complex rates[LINES * RD_SPACE_TRIPLE], triple[LINES * RD_SPACE_TRIPLE];
+    double _Complex rates[LINES * TRIPLE], triple[LINES * TRIPLE];
     const double series[RD_SPACE_ORDERS] = {1};
     struct rd_workspace workspace = {0};
     beam(phi, soft, load, inertia);
     for (int i = 0; i < LINES * FULL; i++) {
-        double _Complex *at = rates + i / FULL * RD_SPACE_TRIPLE + i % FULL;
+        double _Complex *at = rates + i / FULL * TRIPLE + i % FULL;
         at[0] = phi[i % FULL];
         at[FULL] = soft[i % FULL];
         at[2 * FULL] = load[i % FULL];
     }
     for (int doublings = 0; doublings <= 6; doublings += 3) {
-        const struct rd_space_run run = {ldexp(l, 6 - doublings), 6, 1, 1, series};
-        int reached = -1;
+        const struct rd_space_run run = {SIX, ldexp(l, 6 - doublings), 6, 1, 1, series};
+        int reached = -1, whole = 0;
         free(workspace.base);
         workspace = (struct rd_workspace){0};
-        rd_space_triples(&run, 0, rates, doublings, 1e9, triple, &reached, &workspace);
+        rd_space_triples(&run, 0, rates, doublings, 1e9, triple, &reached, &whole, &workspace);
         workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
-        CHECK_INT(
-            rd_space_triples(&run, LINES, rates, doublings, 1e9, triple, &reached, &workspace),
-            RD_OK);
+        CHECK_INT(rd_space_triples(&run, LINES, rates, doublings, 1e9, triple, &reached, &whole,
+                                   &workspace),
+                  RD_OK);
         CHECK_INT(reached, doublings);
+        CHECK(whole);
         /* of the last line, alone in its lanes */
-        const double _Complex *last = triple + (LINES - 1) * RD_SPACE_TRIPLE;
+        const double _Complex *last = triple + (LINES - 1) * TRIPLE;
         const double _Complex *G = last + FULL, *Q = G + FULL;
         CHECK_ABS(creal(last[2 * SIX + 4]), l, 8 * EPS * l, "roundings");
         CHECK_ABS(creal(G[2 * SIX + 2]), l * l * l / 6, 64 * EPS * l * l * l, "roundings");
@@ -79,8 +80,10 @@ static size_t expected(double lambda, double l)
     return count;
 }
 
+static const int32_t whole_rope[8];
+
 struct rope {
-    double length[2], rates[2 * RD_SPACE_TRIPLE], inertia[2 * FULL];
+    double length[2], rates[2 * TRIPLE], inertia[2 * FULL];
     double turn[2 * FULL], none[3 * FULL], series[2 * RD_SPACE_ORDERS], scale[8 * SIX];
     int32_t halvings[2], nodes[2];
     uint8_t held[3 * SIX];
@@ -93,7 +96,7 @@ static void rope_fill(struct rope *rope, size_t pieces, double l)
     memset(rope, 0, sizeof *rope);
     for (size_t p = 0; p < pieces; p++) {
         const size_t at = p * FULL;
-        double *own = rope->rates + p * RD_SPACE_TRIPLE;
+        double *own = rope->rates + p * TRIPLE;
         beam(own, own + FULL, own + 2 * (size_t)FULL, rope->inertia + at);
         rope->nodes[p] = 1;
         rope->series[p * RD_SPACE_ORDERS] = 1;
@@ -107,6 +110,8 @@ static void rope_fill(struct rope *rope, size_t pieces, double l)
     memset(rope->held, 1, SIX);
     memset(rope->held + pieces * SIX, 1, SIX);
     rope->space = (struct rd_space){
+        .components = 1,
+        .width = SIX,
         .pieces = pieces,
         .length = rope->length,
         .halvings = rope->halvings,
@@ -130,19 +135,21 @@ static void test_counts_of_rods_and_beams(void)
     enum { COUNT = sizeof lambda / sizeof *lambda };
     double below[COUNT];
     rope_fill(&rope, 1, 4);
-    CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, rope.scale, below, &workspace),
+    CHECK_INT(rd_space_count(&rope.space, COUNT, whole_rope, lambda, rope.scale, below, &workspace),
               RD_NO_MEMORY);
     workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
     for (size_t pieces = 1; pieces <= 2; pieces++) {
         rope_fill(&rope, pieces, 4);
         workspace.used = 0;
-        CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, rope.scale, below, &workspace), RD_OK);
+        CHECK_INT(
+            rd_space_count(&rope.space, COUNT, whole_rope, lambda, rope.scale, below, &workspace),
+            RD_OK);
         for (size_t k = 0; k < COUNT; k++)
             CHECK_INT((long long)below[k], (long long)expected(lambda[k], 4));
     }
     workspace.size = workspace.used - 1;
     workspace.used = 0;
-    CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, rope.scale, below, &workspace),
+    CHECK_INT(rd_space_count(&rope.space, COUNT, whole_rope, lambda, rope.scale, below, &workspace),
               RD_NO_MEMORY);
     free(workspace.base);
 }
@@ -156,9 +163,10 @@ static void test_a_held_node_within_is_counted(void)
     rope_fill(&rope, 2, 4);
     memset(rope.held + SIX, 1, SIX);
     const double lambda = 3e3;
-    rd_space_count(&rope.space, 1, &lambda, rope.scale, &below, &workspace);
+    rd_space_count(&rope.space, 1, whole_rope, &lambda, rope.scale, &below, &workspace);
     workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
-    CHECK_INT(rd_space_count(&rope.space, 1, &lambda, rope.scale, &below, &workspace), RD_OK);
+    CHECK_INT(rd_space_count(&rope.space, 1, whole_rope, &lambda, rope.scale, &below, &workspace),
+              RD_OK);
     CHECK_INT((long long)below, (long long)(expected(lambda, 1.2) + expected(lambda, 2.8)));
     free(workspace.base);
 }
@@ -168,13 +176,13 @@ static void test_a_held_node_within_is_counted(void)
 static void test_parts_of_what_only_seems_to_change(void)
 {
     enum { FIELDS = 2, NODES = 14, HALVINGS = 6 };
-    static double _Complex rates[FIELDS * RD_SPACE_TRIPLE], one[RD_SPACE_TRIPLE];
-    static double _Complex many[8 * RD_SPACE_TRIPLE];
+    static double _Complex rates[FIELDS * TRIPLE], one[TRIPLE];
+    static double _Complex many[8 * TRIPLE];
     static double series[NODES * FIELDS * RD_SPACE_ORDERS];
     double phi[FULL], soft[FULL], load[FULL], inertia[FULL];
     const double flat[RD_SPACE_ORDERS] = {1};
     struct rd_workspace workspace = {0};
-    int reached;
+    int reached, whole;
     beam(phi, soft, load, inertia);
     for (int i = 0; i < FULL; i++) {
         /* E = E_0 + x E_1 with E_1 = E_0/2, of which a series that takes it away is left */
@@ -182,7 +190,7 @@ static void test_parts_of_what_only_seems_to_change(void)
         rates[FULL + i] = soft[i];
         rates[2 * FULL + i] = -3 * inertia[i];
         for (int k = 0; k < 3; k++)
-            rates[RD_SPACE_TRIPLE + k * FULL + i] = 0.5 * rates[k * FULL + i];
+            rates[TRIPLE + k * FULL + i] = 0.5 * rates[k * FULL + i];
     }
     for (int node = 0; node < NODES; node++) {
         double *at = series + node * FIELDS * RD_SPACE_ORDERS;
@@ -191,61 +199,78 @@ static void test_parts_of_what_only_seems_to_change(void)
         at[RD_SPACE_ORDERS] = -2;
         at[RD_SPACE_ORDERS + 1] = -0.5;
     }
-    const struct rd_space_run plain = {1, HALVINGS, 1, 1, flat};
-    const struct rd_space_run about = {1, HALVINGS, NODES, FIELDS, series};
-    rd_space_triples(&about, 0, rates, 3, 1e9, many, &reached, &workspace);
+    const struct rd_space_run plain = {SIX, 1, HALVINGS, 1, 1, flat};
+    const struct rd_space_run about = {SIX, 1, HALVINGS, NODES, FIELDS, series};
+    rd_space_triples(&about, 0, rates, 3, 1e9, many, &reached, &whole, &workspace);
     workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
-    CHECK_INT(rd_space_triples(&plain, 1, rates, 3, 1e9, one, &reached, &workspace), RD_OK);
+    CHECK_INT(rd_space_triples(&plain, 1, rates, 3, 1e9, one, &reached, &whole, &workspace), RD_OK);
     workspace.used = 0;
-    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1e9, many, &reached, &workspace), RD_OK);
+    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1e9, many, &reached, &whole, &workspace),
+              RD_OK);
     CHECK_INT(reached, 3);
+    CHECK(whole);
     for (int part = 0; part < 8; part++)
-        for (int i = 0; i < RD_SPACE_TRIPLE; i++)
-            CHECK_ABS(creal(many[part * RD_SPACE_TRIPLE + i]), creal(one[i]),
+        for (int i = 0; i < TRIPLE; i++)
+            CHECK_ABS(creal(many[part * TRIPLE + i]), creal(one[i]),
                       256 * EPS * (1e-3 + fabs(creal(one[i]))), "roundings of nodes");
     workspace.used = 0;
-    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1 + 1e-9, many, &reached, &workspace), RD_OK);
-    CHECK(reached < 3);
+    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1 + 1e-9, many, &reached, &whole, &workspace),
+              RD_OK);
+    CHECK(reached < 3 && !whole);
     workspace.size--;
     workspace.used = 0;
-    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1e9, many, &reached, &workspace), RD_NO_MEMORY);
+    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1e9, many, &reached, &whole, &workspace),
+              RD_NO_MEMORY);
     free(workspace.base);
 }
 
-/* one part held at its left: u_1 = G p of a force p at its right */
+/* one part held at its left: u_1 = G p of a force p at its right; of both widths, which say the same where
+   each coordinate is alone */
 static void test_bands_of_numbers_of_both_kinds(void)
 {
-    enum { SIZE = 3 * SIX };
-    double D[FULL] = {0}, G[FULL] = {0}, none[2 * FULL] = {0}, band[SIZE * RD_SPACE_ROWS];
-    double x[SIZE] = {0};
-    static double _Complex cD[FULL], cG[FULL], cnone[2 * FULL], cband[SIZE * RD_SPACE_ROWS];
-    double _Complex cx[SIZE] = {0};
-    uint8_t fixed[SIZE] = {1, 1, 1, 1, 1, 1};
-    int32_t pivot[SIZE];
-    for (int i = 0; i < SIX; i++) {
-        cG[i * SIX + i] = G[i * SIX + i] = 2 + i;
-        x[2 * SIX + i] = 1;
-        cx[2 * SIX + i] = CMPLX(0, 1);
+    for (size_t w = 3; w <= SIX; w += 3) {
+        double D[FULL] = {0}, G[FULL] = {0}, none[2 * FULL] = {0};
+        double band[3 * SIX * (6 * SIX - 2)], x[3 * SIX] = {0};
+        static double _Complex cD[LINES * FULL], cG[LINES * FULL], cnone[LINES * 2 * FULL];
+        double _Complex cx[LINES * 3 * SIX] = {0};
+        uint8_t fixed[LINES * 3 * SIX] = {0};
+        int32_t pivot[3 * SIX];
+        struct rd_workspace workspace = {0};
+        memset(cG, 0, sizeof cG);
+        for (size_t line = 0; line < LINES; line++)
+            for (size_t i = 0; i < w; i++) {
+                fixed[line * 3 * w + i] = 1;
+                cG[line * w * w + i * w + i] = (double)(2 + i + line);
+                cx[line * 3 * w + 2 * w + i] = CMPLX(0, 1);
+            }
+        for (size_t i = 0; i < w; i++) {
+            G[i * w + i] = (double)(2 + i);
+            x[2 * w + i] = 1;
+        }
+        const struct rd_space_band real = {w, 1, 1, 1, D, G, none, none, fixed};
+        const struct rd_space_band many = {
+            w, LINES, 1, 2, (double *)cD, (double *)cG, (double *)cnone, (double *)cnone, fixed};
+        CHECK_INT((long long)rd_space_factor(&real, band, pivot), 1);
+        rd_space_solve(w, 1, 3 * w, 1, band, pivot, x);
+        CHECK_INT(rd_space_respond(&many, 1, cx, &workspace), RD_NO_MEMORY);
+        workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
+        CHECK_INT(rd_space_respond(&many, 1, cx, &workspace), RD_OK);
+        for (size_t i = 0; i < w; i++) {
+            const double of = (double)(2 + i);
+            CHECK_ABS(x[2 * w + i], of, 8 * EPS * of, "roundings");
+            CHECK(x[i] == 0 && x[w + i] == 1);
+            for (size_t line = 0; line < LINES; line++)
+                CHECK_ABS(cimag(cx[line * 3 * w + 2 * w + i]), of + (double)line,
+                          8 * EPS * (of + (double)line), "roundings");
+        }
+        /* nothing holds it */
+        memset(fixed, 0, sizeof fixed);
+        CHECK_INT((long long)rd_space_factor(&real, band, pivot), 0);
+        workspace.used = 0;
+        CHECK_INT(rd_space_respond(&many, 1, cx, &workspace), RD_OK);
+        CHECK(!isfinite(creal(cx[2 * w])));
+        free(workspace.base);
     }
-    rd_space_band(1, 1, 1, D, G, none, none, fixed, band);
-    CHECK_INT((long long)rd_space_factor(1, SIZE, band, pivot), 1);
-    rd_space_solve(1, SIZE, 1, band, pivot, x);
-    rd_space_band(1, 1, 2, (double *)cD, (double *)cG, (double *)cnone, (double *)cnone, fixed,
-                  (double *)cband);
-    CHECK_INT((long long)rd_space_factor_complex(1, SIZE, cband, pivot), 1);
-    rd_space_solve_complex(1, SIZE, 1, cband, pivot, cx);
-    for (int i = 0; i < SIX; i++) {
-        CHECK_ABS(x[2 * SIX + i], 2 + i, 8 * EPS * (2 + i), "roundings");
-        CHECK_ABS(cimag(cx[2 * SIX + i]), 2 + i, 8 * EPS * (2 + i), "roundings");
-        CHECK(x[i] == 0 && x[SIX + i] == 1);
-    }
-    /* nothing holds it */
-    memset(fixed, 0, sizeof fixed);
-    rd_space_band(1, 1, 1, D, G, none, none, fixed, band);
-    CHECK_INT((long long)rd_space_factor(1, SIZE, band, pivot), 0);
-    rd_space_band(1, 1, 2, (double *)cD, (double *)cG, (double *)cnone, (double *)cnone, fixed,
-                  (double *)cband);
-    CHECK_INT((long long)rd_space_factor_complex(1, SIZE, cband, pivot), 0);
 }
 
 int main(void)

@@ -201,12 +201,13 @@ SPANNED = (PAIRED[0], FIELD[:, : 2 * SHAPES[0, :4].size].copy(), PAIR, SLIP)
 
 
 ARC = rd.Rope(rd.Axis.arc(1.0, 2.0), 0.1, bending_stiffness=1.0, torsional_stiffness=0.4)
-SPACE, SCALE = rd.Scene(ARC, planes="both").compile().rope.core(np.array([1e4, 1e6]))
-RATES, SERIES = SPACE[3] + 0j, SPACE[4]
+PLANE = np.array([0, 1], dtype=np.int32)
+SPACE, SCALE = rd.Scene(ARC, planes="both").compile().rope.core(PLANE, np.array([1e4, 1e6]))
+RATES, SERIES = SPACE[3][:, 0] + 0j, SPACE[4]
 BLOCKS = [np.tile(np.eye(6), (2, n, 1, 1)) for n in (1, 1, 1, 2)]
-FIXED = np.zeros(18, dtype=np.uint8)
+FIXED = np.zeros((2, 18), dtype=np.uint8)
 SOLVED = np.ones((2, 3, 18))
-FACTORED = _core.space_factor(*(one + 0j for one in BLOCKS), FIXED)[:2]
+FACTORED = _core.space_factor(*BLOCKS, FIXED)[:2]
 
 # every entry point that takes a chain
 ENTRIES = {
@@ -290,7 +291,8 @@ OTHERS = {
     "space_triples": lambda _: _core.space_triples(RATES, SERIES, 2.0, 6, 6, 1e4),
     "space_factor": lambda _: _core.space_factor(*BLOCKS, FIXED),
     "space_solve": lambda _: _core.space_solve(*FACTORED, SOLVED),
-    "space_count": lambda _: _core.space_count(SPACE, np.array([1e4, 1e6]), SCALE),
+    "space_respond": lambda _: _core.space_respond(*BLOCKS, FIXED, SOLVED),
+    "space_count": lambda _: _core.space_count(SPACE, PLANE, np.array([1e4, 1e6]), SCALE),
 }
 
 
@@ -611,12 +613,16 @@ REFUSED = {
         "doublings must be from 0 to 60, got -1",
     ),
     "halvings of a piece below 0": (
-        lambda: _core.space_count((SPACE[0], SPACE[1] - 100, *SPACE[2:]), np.ones(1), SCALE[:1]),
+        lambda: _core.space_count(
+            (SPACE[0], SPACE[1] - 100, *SPACE[2:]), PLANE[:1], np.ones(1), SCALE[:1]
+        ),
         ValueError,
         "halvings must be from 0 to 60, got -",
     ),
     "nodes of a piece beyond its halvings": (
-        lambda: _core.space_count((*SPACE[:2], SPACE[2] + 24, *SPACE[3:]), np.ones(1), SCALE[:1]),
+        lambda: _core.space_count(
+            (*SPACE[:2], SPACE[2] + 24, *SPACE[3:]), PLANE[:1], np.ones(1), SCALE[:1]
+        ),
         ValueError,
         r"nodes must be from 1 to 24 and at most 2\^halvings, got 25",
     ),
@@ -626,22 +632,46 @@ REFUSED = {
         r"series must be from 1 to 24 and at most 2\^halvings, got 3",
     ),
     "pieces without inertia": (
-        lambda: _core.space_count((*SPACE[:5], SPACE[5][1:], *SPACE[6:]), np.ones(1), SCALE[:1]),
+        lambda: _core.space_count(
+            (*SPACE[:5], SPACE[5][:, 1:], *SPACE[6:]), PLANE[:1], np.ones(1), SCALE[:1]
+        ),
         ValueError,
-        "inertia must have 1 entries along axis 0, got 0",
+        "inertia must have 1 entries along axis 1, got 0",
     ),
     "nodes without masses": (
-        lambda: _core.space_count((*SPACE[:8], SPACE[8][1:], SPACE[9]), np.ones(1), SCALE[:1]),
+        lambda: _core.space_count(
+            (*SPACE[:8], SPACE[8][:, 1:], SPACE[9]), PLANE[:1], np.ones(1), SCALE[:1]
+        ),
         ValueError,
-        "mass must have 2 entries along axis 0, got 1",
+        "mass must have 2 entries along axis 1, got 1",
     ),
     "a scale for each eigenvalue": (
-        lambda: _core.space_count(SPACE, np.ones(1), SCALE),
+        lambda: _core.space_count(SPACE, PLANE[:1], np.ones(1), SCALE),
         ValueError,
         "scale must have 1 entries along axis 0, got 2",
     ),
+    "a component beyond": (
+        lambda: _core.space_count(SPACE, PLANE + 1, np.ones(2), SCALE),
+        ValueError,
+        r"component must lie in 0 ... 1, got 2",
+    ),
+    "matrices of four coordinates": (
+        lambda: _core.space_factor(*(one[..., :4, :4] for one in BLOCKS), FIXED),
+        ValueError,
+        "D must be matrices of 3 or 6 rows, got 4",
+    ),
+    "factors of other bands": (
+        lambda: _core.space_solve(FACTORED[0][:, :, 1:], FACTORED[1], SOLVED),
+        ValueError,
+        "factors must be those of 3 or 6 coordinates",
+    ),
+    "responses of fewer rows": (
+        lambda: _core.space_respond(*BLOCKS, FIXED, SOLVED[:, :, :5]),
+        ValueError,
+        "right must have 18 entries along axis 2, got 5",
+    ),
     "a rope of nine arrays": (
-        lambda: _core.space_count(SPACE[:9], np.ones(1), SCALE[:1]),
+        lambda: _core.space_count(SPACE[:9], PLANE[:1], np.ones(1), SCALE[:1]),
         TypeError,
         "10 arguments",
     ),
@@ -651,9 +681,9 @@ REFUSED = {
         "N must have 2 entries along axis 1, got 1",
     ),
     "fixed rows of other parts": (
-        lambda: _core.space_factor(*BLOCKS, FIXED[1:]),
+        lambda: _core.space_factor(*BLOCKS, FIXED[:, 1:]),
         ValueError,
-        "fixed must have 18 entries along axis 0, got 17",
+        "fixed must have 18 entries along axis 1, got 17",
     ),
     "right sides of fewer rows": (
         lambda: _core.space_solve(*FACTORED, SOLVED[:, :, :5]),

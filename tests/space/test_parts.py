@@ -66,4 +66,7 @@ def test_a_mass_on_an_arch_does_to_first_order_what_its_motion_says():
     small = 1e-6
     heavy = scene.replace(parts=[rd.PointMass(1.0, small)]).compile().modes(4)
     moved = (modes.shape[:, 1, :3] ** 2).sum(axis=1) / modes.modal_mass
-    assert (1 - heavy.eigenvalue / modes.eigenvalue) / small == pytest.approx(moved, rel=1e-4)
+    # one of them does not move there: a rounding over the mass is what is left
+    rounded = 4 * np.finfo(float).eps / small
+    change = (1 - heavy.eigenvalue / modes.eigenvalue) / small
+    assert change == pytest.approx(moved, rel=1e-4, abs=rounded)

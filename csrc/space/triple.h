@@ -1,5 +1,7 @@
-/* Triples of pieces in space, of complex numbers, several lines side by side. */
+/* Triples of pieces in space, of WIDE coordinates and complex numbers, several lines side by side:
+   included by one source file each. */
 #include "base/lanes.h"
+#include "space/width.h"
 
 #include <assert.h>
 
@@ -96,10 +98,9 @@ static RD_CLONES void parts_write(const struct family *f, size_t parts, size_t l
     for (size_t k = 0; k < parts; k++) {
         part_of(f, (int)k, &t);
         const cv *from = &t.D[0][0];
-        for (size_t i = 0; i < RD_SPACE_TRIPLE; i++)
+        for (size_t i = 0; i < TRIPLE; i++)
             for (size_t line = 0; line < lines; line++)
-                to[(line * parts + k) * RD_SPACE_TRIPLE + i] =
-                    CMPLX(from[i].re[line], from[i].im[line]);
+                to[(line * parts + k) * TRIPLE + i] = CMPLX(from[i].re[line], from[i].im[line]);
     }
 }
 
@@ -114,12 +115,12 @@ static void lines_load(const double _Complex *from, size_t size, size_t lines, c
         }
 }
 
-enum rd_status rd_space_triples(const struct rd_space_run *run, size_t lines,
-                                const double _Complex *rates, int doublings, double gentle,
-                                double _Complex *triple, int *reached,
-                                struct rd_workspace *workspace)
+enum rd_status RD_SPACE_(triples)(const struct rd_space_run *run, size_t lines,
+                                  const double _Complex *rates, int doublings, double gentle,
+                                  double _Complex *triple, int *reached, int *whole,
+                                  struct rd_workspace *workspace)
 {
-    const size_t own = run->fields * RD_SPACE_TRIPLE;
+    const size_t own = run->fields * TRIPLE;
     cv *E = rd_take_aligned(workspace, own, sizeof *E, sizeof(lanes));
     struct rates *summed = rd_take_aligned(workspace, 1, sizeof *summed, sizeof(lanes));
     struct triple *at = rd_take_aligned(workspace, 2 * RD_SPACE_NODES, sizeof *at, sizeof(lanes));
@@ -127,8 +128,11 @@ enum rd_status rd_space_triples(const struct rd_space_run *run, size_t lines,
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
     *reached = doublings;
+    *whole = 1;
     const size_t parts = run->nodes == 1 ? 1 : (size_t)1 << (run->halvings - doublings);
-    for (size_t k = 0; workspace->base && k < lines; k += RD_LANES) {
+    /* from the last line on, which is mostly that of the shortest waves: what it reaches all do */
+    for (size_t batch = (lines + RD_LANES - 1) / RD_LANES; workspace->base && batch-- > 0;) {
+        const size_t k = batch * RD_LANES;
         const size_t here = lines - k < RD_LANES ? lines - k : RD_LANES;
         int times = 0;
         lines_load(rates + k * own, own, here, E);
@@ -136,9 +140,11 @@ enum rd_status rd_space_triples(const struct rd_space_run *run, size_t lines,
         family_fill(run, E, summed, &f);
         while (times < *reached && doubled(&f, gentle, at + RD_SPACE_NODES))
             times++;
+        *whole &= times == *reached || k + here == lines;
         *reached = times;
-        if (times == doublings)
-            parts_write(&f, parts, here, triple + k * parts * RD_SPACE_TRIPLE);
+        *whole &= run->nodes == 1 || times == doublings;
+        if (run->nodes == 1 || times == doublings)
+            parts_write(&f, parts, here, triple + k * parts * TRIPLE);
     }
     return RD_OK;
 }

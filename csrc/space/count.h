@@ -1,4 +1,4 @@
-/* Eigenvalues below lambda of a rope in space.
+/* Eigenvalues below lambda of a rope in space, of WIDE coordinates: included by one source file each.
 
    Wittrick and Williams (1971): they are those of its parts, each held at its left end, and the negative
    pivots of what joins the parts. With motion u_i at the left of part i and force f_i at its right, the
@@ -7,11 +7,12 @@
        | Q_i + N_i   -F_i^T |  u_i, f_i, 1 between f_i and u_i+1,
        |   -F_i       -G_i  |
 
-   a symmetric matrix that has as many negative pivots as the stiffness of the nodes has, and six more a
+   a symmetric matrix that has as many negative pivots as the stiffness of the nodes has, and WIDE more a
    part; it exists where G is singular. Two parts of which only what is right of their joint is to
    move are joined by [[-G_1, 1], [1, Q_2 + N]]. */
 #include "base/fast.h"
 #include "base/lapack.h"
+#include "space/width.h"
 
 #include <assert.h>
 #include <math.h>
@@ -74,14 +75,14 @@ RD_INLINE void exchange(double *a, double *b, int either)
 #include "space/kernel.h"
 
 enum {
-    PARTS = 32,                     /* that are counted together */
-    ALL = (2 * PARTS + 1) * RD_SIX, /* their unknowns */
-    PAIR = 2 * RD_SIX,              /* unknowns of a joint */
-    WORK = 64 * ALL,                /* of LAPACK */
-    ODD = 9,                        /* first divisions of a piece that are tried, 1, 3 .. */
-    GRADED = 4096,                  /* parts of a piece along which tension or curvature change */
-    TRIED = 2,                      /* rooms of families: of the best and of the next */
-    INNER = -1,                     /* a node that nothing stands at */
+    PARTS = 32,                   /* that are counted together */
+    ALL = (2 * PARTS + 1) * WIDE, /* their unknowns */
+    PAIR = 2 * WIDE,              /* unknowns of a joint */
+    WORK = 64 * ALL,              /* of LAPACK */
+    ODD = 9,                      /* first divisions of a piece that are tried, 1, 3 .. */
+    GRADED = 4096,                /* parts of a piece along which tension or curvature change */
+    TRIED = 2,                    /* rooms of families: of the best and of the next */
+    INNER = -1,                   /* a node that nothing stands at */
 };
 
 /* of joints of parts that are interpolated from others: far from the resonances of any */
@@ -121,10 +122,10 @@ static int negative(struct counting *c, int n)
 /* N of a node: stiffness - lambda mass */
 static void node_fill(const struct counting *c, int node, double *N)
 {
-    const size_t at = (size_t)node * RD_SIX * RD_SIX;
-    for (size_t i = 0; i < RD_SIX * RD_SIX; i++)
+    const size_t at = (size_t)node * WIDE * WIDE;
+    for (size_t i = 0; i < WIDE * WIDE; i++)
         N[i] = node == INNER ? 0
-                             : c->z[i / RD_SIX] * c->z[i % RD_SIX] *
+                             : c->z[i / WIDE] * c->z[i % WIDE] *
                                    (c->rope->stiffness[at + i] - c->lambda * c->rope->mass[at + i]);
 }
 
@@ -132,14 +133,14 @@ static void node_fill(const struct counting *c, int node, double *N)
 static void rates_of(const struct counting *c, size_t p, double *E)
 {
     const struct rd_space *rope = c->rope;
-    const double *z = c->z, *from = rope->rates + p * rope->fields * RD_SPACE_TRIPLE;
+    const double *z = c->z, *from = rope->rates + p * rope->fields * TRIPLE;
     for (size_t j = 0; j < rope->fields; j++)
-        for (size_t i = 0; i < RD_SIX; i++)
-            for (size_t k = 0; k < RD_SIX; k++) {
-                const size_t at = i * RD_SIX + k, all = RD_SIX * RD_SIX;
+        for (size_t i = 0; i < WIDE; i++)
+            for (size_t k = 0; k < WIDE; k++) {
+                const size_t at = i * WIDE + k, all = WIDE * WIDE;
                 const double mass = j == 0 ? rope->inertia[p * all + at] : 0;
-                const double *one = from + j * RD_SPACE_TRIPLE + at;
-                double *to = E + j * RD_SPACE_TRIPLE + at;
+                const double *one = from + j * TRIPLE + at;
+                double *to = E + j * TRIPLE + at;
                 to[0] = one[0] * z[k] / z[i];
                 to[all] = one[all] / (z[i] * z[k]);
                 to[2 * all] = (one[2 * all] - c->lambda * mass) * z[i] * z[k];
@@ -149,13 +150,13 @@ static void rates_of(const struct counting *c, size_t p, double *E)
 /* whether G V < 1, so that no pivot of the joint 1 + G V is negative */
 static int is_small(const struct triple *one, const struct triple *two, const double *N)
 {
-    double most = 0, row[RD_SIX] = {0};
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++)
-            row[i] += fabs(two->Q[i][j] + N[i * RD_SIX + j]);
-    for (int i = 0; i < RD_SIX; i++) {
+    double most = 0, row[WIDE] = {0};
+    for (int i = 0; i < WIDE; i++)
+        for (int j = 0; j < WIDE; j++)
+            row[i] += fabs(two->Q[i][j] + N[i * WIDE + j]);
+    for (int i = 0; i < WIDE; i++) {
         double sum = 0;
-        for (int j = 0; j < RD_SIX; j++)
+        for (int j = 0; j < WIDE; j++)
             sum += fabs(one->G[i][j]) * row[j];
         most = fmax(most, sum);
     }
@@ -169,23 +170,23 @@ static int joint(struct counting *c, const struct triple *one, const struct trip
     if (is_small(one, two, N))
         return 0;
     memset(c->A, 0, PAIR * PAIR * sizeof *c->A);
-    for (int j = 0; j < RD_SIX; j++) {
-        c->A[j * PAIR + RD_SIX + j] = 1;
-        for (int i = 0; i < RD_SIX; i++) {
+    for (int j = 0; j < WIDE; j++) {
+        c->A[j * PAIR + WIDE + j] = 1;
+        for (int i = 0; i < WIDE; i++) {
             c->A[j * PAIR + i] = -one->G[i][j];
-            c->A[(RD_SIX + j) * PAIR + RD_SIX + i] = two->Q[i][j] + N[i * RD_SIX + j];
+            c->A[(WIDE + j) * PAIR + WIDE + i] = two->Q[i][j] + N[i * WIDE + j];
         }
     }
-    return negative(c, PAIR) - RD_SIX;
+    return negative(c, PAIR) - WIDE;
 }
 
 /* F <- F R, Q <- R^T Q R: what begins with a kink */
 static void turn(const struct counting *c, struct triple *t, const double *R)
 {
-    double by[RD_SIX][RD_SIX], DR[RD_SIX][RD_SIX], none[RD_SIX][RD_SIX] = {{0}};
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++)
-            by[i][j] = R[i * RD_SIX + j] * c->z[j] / c->z[i] - (i == j);
+    double by[WIDE][WIDE], DR[WIDE][WIDE], none[WIDE][WIDE] = {{0}};
+    for (int i = 0; i < WIDE; i++)
+        for (int j = 0; j < WIDE; j++)
+            by[i][j] = R[i * WIDE + j] * c->z[j] / c->z[i] - (i == j);
     memcpy(DR, t->D, sizeof DR);
     carry(DR, by); /* D R */
     memcpy(t->D, by, sizeof by);
@@ -198,7 +199,7 @@ static int part_add(struct counting *c, const struct triple *next, double below,
                     int apart)
 {
     struct triple joined;
-    double N[RD_SIX * RD_SIX];
+    double N[WIDE * WIDE];
     node_fill(c, node, N);
     c->below += below;
     if (!apart && join(c->part + c->parts - 1, next, N, &joined) <= c->gentle) {
@@ -216,8 +217,8 @@ static int part_add(struct counting *c, const struct triple *next, double below,
 static int is_held(const struct rd_space *rope, size_t node)
 {
     int any = 0;
-    for (size_t i = 0; i < RD_SIX; i++)
-        any |= rope->held[node * RD_SIX + i];
+    for (size_t i = 0; i < WIDE; i++)
+        any |= rope->held[node * WIDE + i];
     return any;
 }
 
@@ -225,7 +226,7 @@ static int is_held(const struct rd_space *rope, size_t node)
    alike, or of all that lie one after another. Between nodes of a polynomial no part may have any. */
 static int doubled(struct counting *c, struct family *f, double *below)
 {
-    const double nothing[RD_SIX * RD_SIX] = {0};
+    const double nothing[WIDE * WIDE] = {0};
     struct triple *longer = c->room, one, two;
     const int count = next_count(f), alike = f->count == 1;
     double more = 0;
@@ -288,7 +289,7 @@ static int piece_add(struct counting *c, size_t p, size_t row)
         const int apart = k == 0 && (p == 0 || is_held(rope, p));
         part_of(tried + best, each ? 0 : k, &t);
         if (k == 0)
-            turn(c, &t, rope->turn + p * RD_SIX * RD_SIX);
+            turn(c, &t, rope->turn + p * WIDE * WIDE);
         if (!part_add(c, &t, each || k == 0 ? below : 0, k == 0 ? (int)p : INNER, apart))
             return 0;
     }
@@ -298,26 +299,25 @@ static int piece_add(struct counting *c, size_t p, size_t row)
 /* The parts that are left, and all nodes between them and at the ends. */
 static double parts_count(struct counting *c)
 {
-    const size_t n = (2 * c->parts + 1) * RD_SIX;
     int place[ALL], rows = 0;
     for (size_t k = 0; k <= c->parts; k++) {
         const int node = k == c->parts ? (int)c->rope->pieces : c->node[k];
-        for (size_t i = 0; i < RD_SIX; i++)
-            place[2 * k * RD_SIX + i] =
-                node != INNER && c->rope->held[(size_t)node * RD_SIX + i] ? -1 : rows++;
-        for (size_t i = 0; i < RD_SIX && k < c->parts; i++)
-            place[(2 * k + 1) * RD_SIX + i] = rows++;
+        for (size_t i = 0; i < WIDE; i++)
+            place[2 * k * WIDE + i] =
+                node != INNER && c->rope->held[(size_t)node * WIDE + i] ? -1 : rows++;
+        for (size_t i = 0; i < WIDE && k < c->parts; i++)
+            place[(2 * k + 1) * WIDE + i] = rows++;
     }
-    assert(rows <= ALL && n <= ALL);
+    assert(rows <= ALL);
     memset(c->A, 0, (size_t)(rows * rows) * sizeof *c->A);
     for (size_t k = 0; k <= c->parts; k++) {
-        const int *u = place + 2 * k * RD_SIX, *f = u + RD_SIX;
-        double N[RD_SIX * RD_SIX];
+        const int *u = place + 2 * k * WIDE, *f = u + WIDE;
+        double N[WIDE * WIDE];
         node_fill(c, k == c->parts ? (int)c->rope->pieces : c->node[k], N);
-        for (int i = 0; i < RD_SIX; i++)
-            for (int j = 0; j < RD_SIX; j++) {
+        for (int i = 0; i < WIDE; i++)
+            for (int j = 0; j < WIDE; j++) {
                 const struct triple *t = c->part + k;
-                const double V = N[i * RD_SIX + j] + (k < c->parts ? t->Q[i][j] : 0);
+                const double V = N[i * WIDE + j] + (k < c->parts ? t->Q[i][j] : 0);
                 if (u[i] >= 0 && u[j] >= 0)
                     c->A[u[j] * rows + u[i]] = V;
                 if (k == c->parts)
@@ -325,11 +325,11 @@ static double parts_count(struct counting *c)
                 c->A[f[j] * rows + f[i]] = -t->G[i][j] - (i == j ? COMPLIANT : 0);
                 if (u[j] >= 0)
                     c->A[u[j] * rows + f[i]] = -t->D[i][j] - (i == j);
-                if (i == j && f[RD_SIX + i] >= 0)
-                    c->A[f[i] * rows + f[RD_SIX + i]] = 1;
+                if (i == j && f[WIDE + i] >= 0)
+                    c->A[f[i] * rows + f[WIDE + i]] = 1;
             }
     }
-    return c->below + negative(c, rows) - (double)(c->parts * RD_SIX);
+    return c->below + negative(c, rows) - (double)(c->parts * WIDE);
 }
 
 static double count_one(struct counting *c, double lambda, double gentle)
@@ -345,19 +345,37 @@ static double count_one(struct counting *c, double lambda, double gentle)
     return parts_count(c);
 }
 
-enum rd_status rd_space_count(const struct rd_space *rope, size_t count, const double *lambda,
-                              const double *z, double *below, struct rd_workspace *workspace)
+/* one component of a rope of several */
+static struct rd_space component_of(const struct rd_space *rope, size_t k)
 {
-    struct counting c = {.rope = rope};
+    const size_t pieces = k * rope->pieces, nodes = pieces + k, all = WIDE * WIDE;
+    struct rd_space own = *rope;
+    own.components = 1;
+    own.rates += pieces * rope->fields * TRIPLE;
+    own.inertia += pieces * all;
+    own.turn += pieces * all;
+    own.stiffness += nodes * all;
+    own.mass += nodes * all;
+    own.held += nodes * WIDE;
+    return own;
+}
+
+enum rd_status RD_SPACE_(count)(const struct rd_space *rope, size_t count, const int32_t *component,
+                                const double *lambda, const double *z, double *below,
+                                struct rd_workspace *workspace)
+{
+    struct rd_space own;
+    struct counting c = {.rope = &own};
     c.part = rd_take(workspace, PARTS, sizeof *c.part);
     c.room = rd_take(workspace, (TRIED + 1) * RD_SPACE_NODES, sizeof *c.room);
-    c.E = rd_take(workspace, rope->fields * RD_SPACE_TRIPLE, sizeof *c.E);
+    c.E = rd_take(workspace, rope->fields * TRIPLE, sizeof *c.E);
     c.A = rd_take(workspace, (size_t)ALL * ALL, sizeof *c.A);
     c.work = rd_take(workspace, WORK, sizeof *c.work);
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
     for (size_t k = 0; workspace->base && k < count; k++) {
-        c.z = z + k * RD_SIX;
+        own = component_of(rope, (size_t)component[k]);
+        c.z = z + k * WIDE;
         for (int i = 0; i == 0 || (i < RD_SPACE_GENTLE && isnan(below[k])); i++)
             below[k] = count_one(&c, lambda[k], rd_space_gentle[i]);
     }

@@ -1,0 +1,3 @@
+/* Counts of three coordinates. */
+#define WIDE 3
+#include "space/count.h"

@@ -1,0 +1,3 @@
+/* Responses of six coordinates. */
+#define WIDE 6
+#include "space/respond.h"
