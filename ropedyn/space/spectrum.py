@@ -23,7 +23,8 @@ ITERATIONS = 12
 RIGID = 1e-14  # Less, in units of bending over the whole length, is none.
 NARROW = 1e-13  # Brackets that nothing is found in are an answer themselves.
 BESIDE = 3e-8  # Iteration is at so much from a mode, where solving still tells others from it.
-SETTLED = 4.0  # Shifts of so many times that are the last.
+SETTLED = 2.0  # Shifts of so many times that are the last.
+SAFE = 2.0  # Times the error of the second order.
 AT_ONCE = 32  # Groups that are sought together.
 MORE = 3  # Vectors beside those of the modes that are sought.
 
@@ -257,6 +258,7 @@ class Pursuit:
     def __init__(self, bracket: Bracket, bends: bool = False) -> None:
         self.bracket, self.at = bracket, bracket.middle
         self.value = np.full(bracket.size, math.inf)
+        self.shift = math.inf
         self.settled = False
         self.bends = bends  # whether poles of feet bend what is linear about a shift elsewhere
         self.vectors: Any = None
@@ -265,17 +267,19 @@ class Pursuit:
     def take(self, nearby: Nearby, unit: float) -> bool:
         """Go on from what was found at `at`; True where nothing is to come."""
         value = self.at + nearby.shift
-        change = float(np.abs(value - self.value).max())
-        self.value, self.error, self.vectors = value, nearby.error, nearby.around
+        change, shift = (float(np.abs(one).max()) for one in (value - self.value, nearby.shift))
+        # the last value was off by the square of its shift, so this one is by that of its own
+        off = change * min(shift / self.shift, 1.0) ** 2 if math.isfinite(self.shift) else math.inf
+        self.value, self.shift, self.vectors = value, shift, nearby.around
         mean = float(value.mean())
         near = max(8 * float(np.ptp(value)), BESIDE * max(abs(mean), unit))
-        # at a shift like the least one the error of the second order is that of rounding
-        self.settled = bool(
-            change <= self.error.min() / 4 or np.abs(nearby.shift).max() <= SETTLED * near
-        )
+        least = float(nearby.error.min()) / 4
+        self.settled = min(change, off) <= least or (math.isfinite(off) and shift <= SETTLED * near)
+        self.error = nearby.error + SAFE * off
         if self.bends:
             # the error of the second order is a third of what another shift changes
-            self.settled = change <= 2 * float(self.error.min())
+            self.settled = change <= 2 * float(nearby.error.min())
+            self.error = nearby.error + change
             near *= 2 if abs(self.at - mean) < 1.5 * near else 1
         self.at = mean + near
         return self.settled
@@ -323,7 +327,7 @@ class Nearby(NamedTuple):
     """Vectors of the eigenvalues closest to an assembly's, and those around them."""
 
     shift: Real  # of the eigenvalues from the assembly's
-    error: Real  # estimate of what rounding does to them
+    error: Real  # what rounding does to them, at most
     own: Real  # (unknowns, size), of unit mass
     around: Real
 
@@ -340,9 +344,10 @@ def ritz(system: Assembly, x: Real, sizes: list[int], times: int = 3) -> list[Ne
     x = np.linalg.qr(x)[0]
     own, around = np.zeros((*x.shape[:2], most)), []
     for k, (shift, mix) in enumerate(_small(*_forms(system, x))):
-        around.append(x[k] @ mix)
-        near = np.abs(shift).argsort()[:most]
-        own[k, :, : len(near)] = around[k][:, near]
+        # the nearest first: the next iteration may start with fewer
+        around.append(x[k] @ mix[:, np.abs(shift).argsort()])
+        near = around[k][:, :most]
+        own[k, :, : near.shape[1]] = near
     # those that are sought alone: the others' shifts are so much larger that they round theirs
     own = np.linalg.qr(factored.solve(mass(system, np.linalg.qr(own)[0])))[0]
     found = []
@@ -392,7 +397,7 @@ def mass(system: Assembly, x: Real) -> Real:
 
 
 def _rounding(system: Assembly, x: Real) -> Real:
-    """Estimate what rounding of the parts does to the eigenvalues of vectors of unit mass."""
+    """Bound what rounding of the parts does to the eigenvalues of vectors of unit mass."""
     u, f = (np.linalg.norm(one, axis=2) for one in system.apart(x))
     D, G, Q, N = (one[:, :, None] for one in system.largest)
     left = u[:, :-1]
