@@ -87,6 +87,11 @@ class Assembly:
         return np.append((self.node[:-1, None] + within).ravel(), self.node[-1])
 
     @computed
+    def whole(self) -> Blocks:
+        """What multiplies complex vectors."""
+        return Blocks(self.D, self.G, self.Q, self.N, self.held, 1.0)
+
+    @computed
     def real(self) -> Blocks:
         """What multiplies real vectors, the real part."""
         D, G, Q, N = (np.ascontiguousarray(a.real) for a in (self.D, self.G, self.Q, self.N))
@@ -130,16 +135,16 @@ class Assembly:
 
 
 class Blocks(NamedTuple):
-    """Real matrices of the parts, and what stands beside D."""
+    """Matrices of the parts, and what stands beside D."""
 
-    D: Real
-    G: Real
-    Q: Real
-    N: Real
+    D: Any
+    G: Any
+    Q: Any
+    N: Any
     held: Flags
     one: float
 
-    def apply(self, u: Real, f: Real) -> tuple[Real, Real]:
+    def apply(self, u: Any, f: Any) -> tuple[Any, Any]:
         """Return p and d of motion (n, parts + 1, width, columns) and force."""
         d = -(self.D @ u[:, :-1] + self.G @ f)
         p = self.N @ u
@@ -238,7 +243,8 @@ def foot_of(carried: Carried, factors: Factors) -> Foot:
     u[:, 0, :, :6] = np.eye(6)
     # f_-1 is what the left end asks for
     force = Q @ u[:, 0] - f[:, 0] - D.swapaxes(1, 2) @ f[:, 0]
-    off = bound(system, (u, f), (u, f))
+    field = LoadedFields(u, f, p)
+    off = bound(system, field, field)
     by = carried.arm / z[:, :, None]
     size = np.abs(by)
     return Foot(
@@ -252,15 +258,31 @@ def foot_of(carried: Carried, factors: Factors) -> Foot:
 ROUNDINGS = 4.0  # Of entries of a part's matrices, in units of the largest one, scaled.
 
 
-def bound(system: Assembly, one: tuple[Any, Any], other: tuple[Any, Any]) -> Real:
-    """Estimate x^T dA y, shape (n, columns of one, of other), by the parts' largest entries."""
-    (u, f), (v, g) = (tuple(np.linalg.norm(w, axis=2) for w in pair) for pair in (one, other))
+class LoadedFields(NamedTuple):
+    """Motion and force of loads, columns (n, nodes or parts, width, columns)."""
+
+    u: Any
+    f: Any
+    load: Any
+
+    def left(self, system: Assembly) -> tuple[Any, Any]:
+        """Return what the matrix takes of the loads that is not there."""
+        p, d = system.whole.apply(self.u, self.f)
+        return p - self.load, d
+
+
+def bound(system: Assembly, one: LoadedFields, other: LoadedFields) -> Real:
+    """Bound x^T dA y and what solving left, shape (n, columns of one, of other)."""
+    u, f, v, g = (np.linalg.norm(w, axis=2) for w in (one.u, one.f, other.u, other.f))
     D, G, Q, N = system.largest
     left, right = u[:, :-1], v[:, :-1]
     form = "lnd,ln,lnr->ldr"
     size = np.einsum(form, u, N, v) + np.einsum(form, left, Q, right) + np.einsum(form, f, G, g)
     size += np.einsum(form, f, 1 + D, right) + np.einsum(form, left, 1 + D, g)
-    limit: Real = ROUNDINGS * np.finfo(float).eps * size
+    # the exchange of rows may fill what is as small as a rigid motion's inertia with roundings of 1
+    p, d = (np.linalg.norm(w, axis=2) for w in one.left(system))
+    missed = np.einsum("lnd,lnr->ldr", p, v) + np.einsum("lnd,lnr->ldr", d, g)
+    limit: Real = ROUNDINGS * np.finfo(float).eps * size + missed
     return limit
 
 

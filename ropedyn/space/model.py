@@ -216,7 +216,7 @@ class SpaceModel(Frozen):
         -------
         Modes
             Double modes, those closer than a relative 1e-8 among them, are found together.
-            `rounding_error` is an estimate; `mesh_error` is 0, or where curvature, tension or
+            `rounding_error` is a bound; `mesh_error` is 0, or where curvature, tension or
             section change along a piece how far shorter blocks are away.
 
         Raises

@@ -20,7 +20,7 @@ from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ..scene import damping
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.scene import Scene
-from .assembly import Assembly, assemble, bound, foot_of
+from .assembly import Assembly, LoadedFields, assemble, bound, foot_of
 from .compile import finer_rope
 from .rope import SIX, Factors, SpaceRope
 
@@ -142,19 +142,19 @@ class Request:
         """Return motion per unit force, shape (drives, responses, f)."""
         value = np.zeros(self._shape, dtype=np.complex128)
         for side, lines, system in self._systems():
-            motion, _ = self._solved(system, side, lines, 0)
+            motion = self._solved(system, side, lines, 0).u
             row, _ = self._rows(system, side, lines, 1)
             seen = np.einsum("lrc,lrcd->drl", row, motion[:, system.node[side.node[1]]])
             value[(*side.pairs, lines)] = seen
         return value
 
     def rounding(self) -> Real:
-        """Estimate what rounding does to it: |x|^T |dA| |y| of motion by drives and responses."""
+        """Bound what rounding does to it: |x|^T |dA| |y| of motion by drives and responses."""
         limit = np.zeros(self._shape)
         for side, lines, system in self._systems():
             one, other = (self._solved(system, side, lines, i) for i in (0, 1))
             _, doubt = self._rows(system, side, lines, 1)
-            moved = np.abs(one[0][:, system.node[side.node[1]]])
+            moved = np.abs(one.u[:, system.node[side.node[1]]])
             seen = np.einsum("lrc,lrcd->drl", doubt, moved)
             limit[(*side.pairs, lines)] = bound(system, one, other).transpose(1, 2, 0) + seen
         return limit
@@ -185,9 +185,7 @@ class Request:
                 z = self.rope.scale(side.which, np.abs(factors.inertia))
                 yield side, lines, assemble(self.rope, side.which, factors, z)
 
-    def _solved(
-        self, system: Assembly, side: AskedPart, lines: slice, end: int
-    ) -> tuple[Complex, Complex]:
+    def _solved(self, system: Assembly, side: AskedPart, lines: slice, end: int) -> LoadedFields:
         """Return motion and force of unit loads on drives (0) or responses (1)."""
         node, n, f = system.node[side.node[end]], len(system.D), self.frequency[lines]
         load = np.zeros((n, system.parts + 1, system.width, len(node)), dtype=np.complex128)
@@ -201,7 +199,7 @@ class Request:
             raise SolveError(
                 f"{f[singular[0]]:g} Hz lies on an undamped resonance: there is no finite response"
             )
-        return system.apart(x)
+        return LoadedFields(*system.apart(x), load)
 
     def _rows(
         self, system: Assembly, side: AskedPart, lines: slice, end: int

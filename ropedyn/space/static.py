@@ -16,7 +16,7 @@ from ..eigen.vectors import within
 from ..response.critical import exceeds
 from ..response.deflection import POINTS, Deflection, summed_loads
 from ..scene.scene import Scene
-from .assembly import Assembly, assemble, bound
+from .assembly import Assembly, LoadedFields, assemble, bound
 from .compile import finer_rope
 from .modes import check_points
 from .rope import SIX, SpaceRope, unforced
@@ -81,18 +81,17 @@ class LoadedPart(NamedTuple):
 
     own: Index  # its coordinates
     system: Assembly
-    u: Real
-    f: Real
+    field: LoadedFields
 
     @property
     def displacement(self) -> Real:
         """Of the nodes, shape (nodes, width)."""
-        return np.asarray(self.u[0, self.system.node, :, 0] * self.system.z[0])
+        return np.asarray(self.field.u[0, self.system.node, :, 0] * self.system.z[0])
 
     @property
     def force(self) -> Real:
         """What the surroundings put on the nodes: f_b on the left less f_a on the right."""
-        D, Q, u, f = self.system.D[0].real, self.system.Q[0].real, self.u[0], self.f[0]
+        D, Q, u, f = (one[0].real for one in (self.system.D, self.system.Q, *self.field[:2]))
         force = np.zeros(u.shape)
         force[1:] += f
         force[:-1] += Q @ u[:-1] - f - D.swapaxes(1, 2) @ f
@@ -104,7 +103,7 @@ class LoadedPart(NamedTuple):
         unit = np.zeros((system.parts + 1, w, w * nodes))
         along = np.tile(np.arange(w), nodes)
         unit[np.repeat(system.node, w), along, np.arange(w * nodes)] = 1.0
-        limit = bound(system, (self.u, self.f), _solved(system, unit))[0, 0]
+        limit = bound(system, self.field, _solved(system, unit))[0, 0]
         limit = limit.reshape(nodes, w) * system.z[0]
         limit[system.held[0, system.node]] = 0.0
         return limit
@@ -122,7 +121,7 @@ def _under(rope: SpaceRope, loads: dict[Point, float]) -> list[LoadedPart]:
             node = system.node[int(np.abs(rope.x - at).argmin())]
             right[node, along] += amount * system.z[0, along, None]
         if right.any():
-            found.append(LoadedPart(own, system, *_solved(system, right)))
+            found.append(LoadedPart(own, system, _solved(system, right)))
     return found
 
 
@@ -132,7 +131,7 @@ def _same(shape: tuple[int, ...], value: float) -> Real:
     return error
 
 
-def _solved(system: Assembly, right: Real) -> tuple[Real, Real]:
+def _solved(system: Assembly, right: Real) -> LoadedFields:
     """Return motion and force of columns of loads (parts + 1, 6, columns)."""
     right = np.where(system.held[0, :, :, None], 0.0, right)[None]
     none = np.zeros((1, system.parts, system.width, right.shape[3]))
@@ -145,4 +144,4 @@ def _solved(system: Assembly, right: Real) -> tuple[Real, Real]:
             "the stiffness is singular to working precision: a rigid motion is free, or the "
             "compression is critical"
         )
-    return system.apart(x)
+    return LoadedFields(*system.apart(x), right)

@@ -1,0 +1,142 @@
+"""What rounding does to answers of ropes on an axis, against numbers of eleven digits more."""
+
+import math
+
+import numpy as np
+import pytest
+from support import random_axes, wide_space
+
+import ropedyn as rd
+from ropedyn.chain.port import Point
+from ropedyn.space.response import Request
+from ropedyn.space.rope import ALL
+from ropedyn.space.spectrum import Counter, lowest
+
+pytestmark = pytest.mark.skipif(wide_space.DIGITS < 63, reason="wide numbers are no wider here")
+
+WIDE = "the same equations in numbers of 64 binary digits, by parts that are divided elsewhere"
+NONE_BEYOND = "of the bound that the answer states, and none may be beyond it"
+
+
+def response_ratios(rng, lines=24):
+    """Errors over their bounds: responses from far below the first mode on, six next to modes."""
+    scene = random_axes.scene(rng, damped=True)
+    model = scene.compile()
+    first = math.sqrt(model.rope.unit) / (2 * math.pi)
+    f = first * 10 ** rng.uniform(-3, rng.uniform(1, 3), lines)
+    near = model.modes(6).frequency * (1 + 10 ** rng.uniform(-14, -3, 6) * rng.choice([-1, 1], 6))
+    f[:6] = np.maximum(near, 1e-3 * first)
+    points: list[Point] = [
+        (str(rng.choice(model.coordinates)), rng.uniform(0, scene.rope.length)) for _ in range(3)
+    ]
+    frf = model.frf(np.sort(f), drive=points)
+    asked = Request.of(scene, model.rope, frf.frequency, frf.drive, frf.response)
+    exact = wide_space.receptance(asked)
+    error = np.abs(frf.value - exact).astype(float)
+    assert (error[frf.rounding_limit == 0] == 0).all()
+    return (error / np.where(frf.rounding_limit > 0, frf.rounding_limit, 1.0))[exact != 0]
+
+
+def mode_ratios(rng, number=8):
+    """Errors over their bounds: eigenvalues that lie apart from others."""
+    model = random_axes.scene(rng).compile()
+    rope, found = model.rope, lowest(model.rope, number, math.inf)
+    ratios = []
+    for k in range(len(rope.own)):
+        own = np.flatnonzero(found.component == k)
+        value = found.eigenvalue[own]
+        gaps = np.concatenate([[math.inf], np.diff(value), [math.inf]])
+        alone = np.minimum(gaps[:-1], gaps[1:]) > 1e-5 * np.abs(value)
+        alone &= np.abs(value) > 1e-6 * rope.unit
+        if alone.any():
+            exact = wide_space.eigenvalues(rope, k, value[alone])
+            error = np.abs(exact - value[alone]).astype(float)
+            ratios.append(error / found.error[own][alone])
+    return np.concatenate(ratios) if ratios else np.zeros(0)
+
+
+def some(ratios_of, number, seed):
+    """So many ratios of scenes one after another."""
+    rng, found = np.random.default_rng(seed), np.zeros(0)
+    while len(found) < number:
+        found = np.concatenate([found, ratios_of(rng)])
+    return found
+
+
+def test_bounds_of_responses_cover_what_rounding_does():
+    found = some(response_ratios, 1000, 0)
+    assert found.max() < 1
+    assert np.median(found) > 1e-3  # 1 %
+
+
+def test_bounds_of_modes_cover_what_rounding_does():
+    found = some(mode_ratios, 60, 1)
+    assert found.max() < 1
+    assert np.median(found) > 2e-3  # 2 %
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    "10^4 responses of random ropes on an axis, a quarter next to modes: error over its bound",
+    reference=WIDE,
+    accepted=1.0,
+    wide=NONE_BEYOND,
+)
+def test_bounds_of_many_responses_cover_what_rounding_does(claim):
+    claim(some(response_ratios, 10_000, 100).max())
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    "1000 modes of random ropes on an axis: largest error over its bound",
+    reference=WIDE,
+    accepted=1.0,
+    wide=NONE_BEYOND,
+)
+def test_bounds_of_many_modes_cover_what_rounding_does(claim):
+    claim(some(mode_ratios, 1000, 101).max())
+
+
+def counts_contradict(rng):
+    """How many of four counts are not those of the rope cut elsewhere, or of six coordinates."""
+    scene = random_axes.scene(rng)
+    rope, length = scene.compile().rope, scene.rope.length
+    value = rope.unit * 10 ** rng.uniform(-1, 7, 4) * rng.choice([1.0, 1.0, 1.0, -1e-3], 4)
+    cut, _ = rope.cut(length * rng.uniform(0, 1, rng.integers(1, 4)), 1e-9 * length)
+    whole = scene.compile().rope
+    vars(whole)["own"] = ALL
+    wanted, *others = (Counter(one).total(value.tolist()) for one in (rope, cut, whole))
+    return sum(a != b for other in others for a, b in zip(other, wanted))
+
+
+def test_counts_are_those_of_other_cuts_and_of_all_coordinates():
+    rng = np.random.default_rng(2)
+    assert sum(counts_contradict(rng) for _ in range(60)) == 0
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    "10^4 counts of 2500 random ropes on an axis, pulled, pushed and twisted, up to some 10^3 "
+    "modes: how many are not those of the same rope cut elsewhere, or of all six coordinates",
+    reference="parts of other lengths, joints elsewhere, matrices of the other width",
+    accepted=0.0,
+)
+def test_many_counts_are_those_of_other_cuts_and_of_all_coordinates(claim):
+    rng = np.random.default_rng(7)
+    claim(sum(counts_contradict(rng) for _ in range(2500)))
+
+
+def test_a_rigid_motion_has_a_bound_that_says_how_much_is_left():
+    # 0.001 of the first mode of a free rope, where its stiffness is a millionth of roundings of 1
+    rope = rd.Rope(
+        rd.Axis.points([[0, 0, 0], [1, 0, 0.3], [1, 0, 1], [0.4, 0, 2]]),
+        0.7,
+        bending_stiffness=7.0,
+        torsional_stiffness=3.0,
+    )
+    model = rd.Scene(rope, planes="both", ends=("free", "free")).compile()
+    frf = model.frf([1e-3, 1e-2], drive=("z", 0.5))
+    asked = Request.of(model.scene, model.rope, frf.frequency, frf.drive, frf.response)
+    error = np.abs(frf.value - wide_space.receptance(asked)[0]).astype(float)
+    assert (error < frf.rounding_limit).all()
+    assert (frf.rounding_error < 1e-3).all()
