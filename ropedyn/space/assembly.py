@@ -255,6 +255,7 @@ def foot_of(carried: Carried, factors: Factors) -> Foot:
     )
 
 
+SAFE = 2.0  # Times what is told by numbers that are rounded themselves.
 ROUNDINGS = 4.0  # Of entries of a part's matrices, in units of the largest one, scaled.
 
 
@@ -282,7 +283,7 @@ def bound(system: Assembly, one: LoadedFields, other: LoadedFields) -> Real:
     # the exchange of rows may fill what is as small as a rigid motion's inertia with roundings of 1
     p, d = (np.linalg.norm(w, axis=2) for w in one.left(system))
     missed = np.einsum("lnd,lnr->ldr", p, v) + np.einsum("lnd,lnr->ldr", d, g)
-    limit: Real = ROUNDINGS * np.finfo(float).eps * size + missed
+    limit: Real = ROUNDINGS * np.finfo(float).eps * size + SAFE * missed
     return limit
 
 

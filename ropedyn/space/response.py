@@ -107,7 +107,7 @@ class AskedPart(NamedTuple):
     point: list[list[Point]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Request:
     """What is asked for: a rope with nodes at the points, and the lines."""
 

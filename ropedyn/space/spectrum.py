@@ -12,7 +12,7 @@ import numpy as np
 from .. import _core
 from ..base.array import Index, Real
 from ..base.errors import SolveError
-from .assembly import ROUNDINGS, Assembly, assemble, foot_of
+from .assembly import ROUNDINGS, SAFE, Assembly, assemble, foot_of
 from .rope import SPRINGS, SpaceRope, unforced
 
 STEP = 2.0**-200  # Of derivatives by a complex step.
@@ -24,7 +24,6 @@ RIGID = 1e-14  # Less, in units of bending over the whole length, is none.
 NARROW = 1e-13  # Brackets that nothing is found in are an answer themselves.
 BESIDE = 3e-8  # Iteration is at so much from a mode, where solving still tells others from it.
 SETTLED = 2.0  # Shifts of so many times that are the last.
-SAFE = 2.0  # Times the error of the second order.
 AT_ONCE = 32  # Groups that are sought together.
 MORE = 3  # Vectors beside those of the modes that are sought.
 
@@ -402,5 +401,6 @@ def _rounding(system: Assembly, x: Real) -> Real:
     D, G, Q, N = (one[:, :, None] for one in system.largest)
     left = u[:, :-1]
     size = (N * u**2).sum(1) + (Q * left**2 + 2 * (1 + D) * left * f + G * f**2).sum(1)
-    bound: Real = ROUNDINGS * np.finfo(float).eps * size
+    # those of the parts, and as many of their sums
+    bound: Real = SAFE * ROUNDINGS * np.finfo(float).eps * size
     return bound

@@ -17,7 +17,7 @@ def rates_of(rope: SpaceRope, k: int, factors: Factors, z):
     """Phi, S and q of component k, scaled, shape (n, pieces, 3, w, w)."""
     own = {name: array[k].astype(np.clongdouble) for name, array in rope.blocks._asdict().items()}
     section, tension, _, inertia, drag = (
-        np.asarray(one, dtype=np.clongdouble)[:, None, None, None] for one in factors
+        np.asarray(one, dtype=np.clongdouble)[:, None, None, None] for one in factors[:5]
     )
     S = own["soft"][:, 0] / section + own["string"][:, 0] / tension
     initial = tension * own["initial"][:, 0]
@@ -88,7 +88,7 @@ def assembled(rope: SpaceRope, k: int, factors: Factors, z):
         node.append(len(parts))
     F, G, Q = (np.stack(one, axis=1) for one in zip(*parts))
     _, _, springs, inertia, drag = (
-        np.asarray(one, dtype=np.clongdouble)[:, None, None, None] for one in factors
+        np.asarray(one, dtype=np.clongdouble)[:, None, None, None] for one in factors[:5]
     )
     own = rope.blocks
     N = np.zeros((len(z), len(parts) + 1, *F.shape[2:]), dtype=np.clongdouble)
@@ -169,11 +169,11 @@ def receptance(request):
         z = request.rope.scale(one.which, np.abs(request.factors.inertia))
         F, G, Q, N, held, node = assembled(request.rope, k, factors, z)
         drives, responses = (node[at] for at in one.node)
+        driven, seen = ([one.own.index(c) for c, _ in points] for points in one.point)
         right = np.zeros((len(z), F.shape[1] + 1, F.shape[2], len(drives)), dtype=np.clongdouble)
-        right[:, drives, one.along[0], np.arange(len(drives))] = z[:, one.along[0]]
+        right[:, drives, driven, np.arange(len(drives))] = z[:, driven]
         u, _ = solved(F, G, Q, N, held, request.rope.blocks.absent[k], right)
-        seen = u[:, responses, one.along[1]] * z[:, one.along[1], None]
-        value[one.pairs] = seen.transpose(2, 1, 0)
+        value[one.pairs] = (u[:, responses, seen] * z[:, seen, None]).transpose(2, 1, 0)
     return value
 
 
@@ -193,7 +193,7 @@ def eigenvalues(rope: SpaceRope, k: int, near):
     """Those of component k, each alone, that lie next to some numbers (n,)."""
     at = near.astype(np.longdouble) * (1 + BESIDE)
     which = np.full(len(near), k)
-    factors = Factors(*np.ones((3, len(at))), -(at + 1j * STEP), np.zeros(len(at)))
+    factors = Factors(*np.ones((3, len(at))), -(at + 1j * STEP), *np.zeros((2, len(at))))
     z = rope.scale(which, near)
     F, G, Q, N, held, _ = assembled(rope, k, factors, z)
     absent = rope.blocks.absent[k]
