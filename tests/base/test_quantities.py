@@ -201,7 +201,7 @@ def gap(kind, unit):
     return {"gap": Q(0.01, unit)} if kind is rd.Stop else {}
 
 
-@pytest.mark.parametrize(("exponent", "unit"), [(2, "N s^2/m^2"), (0, "N"), (0.5, "N (s/m)^0.5")])
+@pytest.mark.parametrize(("exponent", "unit"), [(2, "N s^2/m^2"), (0, "N"), (0.5, "N*(s/m)^0.5")])
 def test_the_unit_of_a_dashpot_goes_with_its_exponent(exponent, unit):
     assert rd.Dashpot(0.5, Q(2.0, unit), exponent=exponent).damping == pytest.approx(2.0)
     with pytest.raises(rd.SceneError, match="damping must be"):
