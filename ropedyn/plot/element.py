@@ -22,7 +22,7 @@ FAR = 0.03  # Of the displacement that is drawn [m].
 VIEW = {"elev": 38.0, "azim": -78.0}
 
 
-class Loaded(NamedTuple):
+class LoadedElement(NamedTuple):
     """An element held at its left end, a force and a moment on the body at its right end M.
 
     Vectors in space.
@@ -33,7 +33,7 @@ class Loaded(NamedTuple):
     moment: Real
 
     @classmethod
-    def drawn(cls) -> Loaded:
+    def drawn(cls) -> LoadedElement:
         """Return the one of the figures."""
         own = AXIS.frame(AXIS.length)
         return cls(AXIS, own @ FORCE, own @ MOMENT)
@@ -56,7 +56,7 @@ def element() -> Figure:
     figure, (ax,) = new_figure(1, height=3.6)
     ax.remove()
     figure.set_size_inches(12.0, 3.6)
-    loaded = Loaded.drawn()
+    loaded = LoadedElement.drawn()
     for k, draw in enumerate((_frames, _displaced, _balanced)):
         own: Any = figure.add_subplot(1, 3, k + 1, projection="3d")
         draw(own, loaded)
@@ -64,7 +64,7 @@ def element() -> Figure:
     return figure
 
 
-def _frames(ax: Any, loaded: Loaded) -> None:
+def _frames(ax: Any, loaded: LoadedElement) -> None:
     axis, at = loaded.axis, PART * loaded.axis.length
     _line(ax, axis, 0.0, axis.length)
     _frame(
@@ -76,7 +76,7 @@ def _frames(ax: Any, loaded: Loaded) -> None:
     ax.set_title("2: axis r(s), section and body")
 
 
-def _displaced(ax: Any, loaded: Loaded) -> None:
+def _displaced(ax: Any, loaded: LoadedElement) -> None:
     axis = loaded.axis
     M, own, (u, theta) = axis.position(axis.length), axis.frame(axis.length), loaded.moved()
     by = FAR / float(np.linalg.norm(u))
@@ -94,7 +94,7 @@ def _displaced(ax: Any, loaded: Loaded) -> None:
     ax.set_title(f"3: the body moved by its load, {by:.0f} times")
 
 
-def _balanced(ax: Any, loaded: Loaded) -> None:
+def _balanced(ax: Any, loaded: LoadedElement) -> None:
     axis, at = loaded.axis, PART * loaded.axis.length
     M, A = axis.position(axis.length), axis.position(at)
     V, L = loaded.cut(at)

@@ -41,14 +41,14 @@ def film(animation: Animation, file: Path) -> None:
                 frames.grab_frame()
 
 
-class Moving(NamedTuple):
+class Film(NamedTuple):
     """A figure, and what takes it to a frame (nodes, coordinates)."""
 
     figure: Any
     move: Callable[[Real], None]
 
 
-def _in_panels(animation: Animation) -> Moving:
+def _in_panels(animation: Animation) -> Film:
     rows = len(animation.coordinates)
     figure, panels = new_figure(rows, height=2.4 + 1.0 / rows)
     lines = [_panel(animation, k, ax) for k, ax in enumerate(panels)]
@@ -59,10 +59,10 @@ def _in_panels(animation: Animation) -> Moving:
         for line, u in zip(lines, frame.T):
             line.set_ydata(u)
 
-    return Moving(figure, move)
+    return Film(figure, move)
 
 
-def _in_space(animation: Animation) -> Moving:
+def _in_space(animation: Animation) -> Film:
     rest, view = animation.rest, animation.view
     assert rest is not None
     ax: Any = axes_of(view)
@@ -75,7 +75,7 @@ def _in_space(animation: Animation) -> Moving:
         at = seen(rest + frame, view)
         (line.set_data_3d if len(at) == 3 else line.set_data)(*at)
 
-    return Moving(ax.figure, move)
+    return Film(ax.figure, move)
 
 
 def _panel(animation: Animation, k: int, ax: Any) -> Line2D:

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import ropedyn as rd
-from ropedyn.plot.element import STIFFNESS, Loaded, element
+from ropedyn.plot.element import STIFFNESS, LoadedElement, element
 
 
 def test_load_motion_and_reaction_are_those_of_the_rope():
-    loaded = Loaded.drawn()
+    loaded = LoadedElement.drawn()
     axis, (C, B, A) = loaded.axis, STIFFNESS
     rope = rd.Rope(axis, 1.0, bending_stiffness=(B, A), torsional_stiffness=C)
     model = rd.Scene(rope, ends=("clamped", "free"), planes="both").compile()
