@@ -39,7 +39,8 @@ MOST_POINTS = 1_000_000  # An answer is given at so many parts of a continuous e
 BELOW = 1e-9  # A bound is taken by so much.
 
 
-KEPT = 8  # So many answers to a question are kept for when it is asked again.
+KEPT = 8  # So many answers to a question are kept for when it is asked again,
+NUMBERS = 1 << 17  # each of so many numbers at most.
 
 Answered = TypeVar("Answered", bound=tuple[Any, ...])
 
@@ -344,15 +345,17 @@ def part_of(model: Compiled, component: tuple[str, ...]) -> Chain:
 def once(model: Compiled, asked: Any, compute: Callable[[], Answered]) -> Answered:
     """Return what computes, or what it returned when the same was asked of the model before.
 
-    That must be a tuple: its arrays become read-only. The last few are kept.
+    That must be a tuple: its arrays become read-only. The last few are kept, but what is large.
     """
     told = model._told
     known: Answered | None = told.get(asked)
-    if known is None:
-        known = compute()
-        for one in known:
-            if isinstance(one, np.ndarray):
-                one.setflags(write=False)
+    if known is not None:
+        return known
+    known = compute()
+    arrays = [one for one in known if isinstance(one, np.ndarray)]
+    if sum(one.size for one in arrays) <= NUMBERS:
+        for one in arrays:
+            one.setflags(write=False)
         for old in list(told)[: max(0, len(told) - KEPT + 1)]:
             told.pop(old, None)
         told[asked] = known

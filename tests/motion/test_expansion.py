@@ -1,9 +1,12 @@
 """Transfer functions as sums over modes, against the frequency response and closed forms."""
 
+import pickle
+
 import numpy as np
 import pytest
 
 import ropedyn as rd
+from ropedyn.chain.compiled import KEPT, NUMBERS
 from ropedyn.motion.modal.expansion import expand
 from ropedyn.signal import contour
 
@@ -196,3 +199,20 @@ def test_damping_that_couples_modes_is_refused():
     scene = rd.Scene(STRING, tension=100.0, parts=[rd.Dashpot(0.4, 3.0)])
     with pytest.raises(rd.SceneError, match="damping must not couple modes"):
         expand(scene.compile(elements=8), [("z", 0.5)], [("z", 0.5)])
+
+
+def test_motion_asked_for_again_is_the_same_and_costs_no_modes():
+    model = rd.Scene(rd.Rope(1.0, 0.4), tension=100.0).compile(elements=12)
+    time, asked = np.linspace(0.0, 0.1, 50), {"drive": ("z", 0.25), "force": rd.Step(1.0)}
+    first, again = (model.transient(time, **asked) for _ in range(2))
+    assert (first.value == again.value).all()
+    other = pickle.loads(pickle.dumps(model)).transient(time, **asked)
+    assert (first.value == other.value).all()
+    for k in range(2 * KEPT):
+        model.transient(time, drive=("z", (1 + k) / 20), force=rd.Step(1.0))
+    assert len(model._told) == KEPT
+    known = expand(model, [("z", 0.25)], [("z", 0.5)])[0].expansion
+    assert expand(model, [("z", 0.25)], [("z", 0.5)])[0].expansion is known
+    many = [("z", x) for x in np.linspace(0.1, 0.9, 20_000).tolist()]
+    assert expand(model, [("z", 0.25)], many)[0].expansion.a.size > NUMBERS
+    assert len(model._told) == KEPT  # what is large is not kept
