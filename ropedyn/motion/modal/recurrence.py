@@ -73,7 +73,7 @@ def changes(sigma: Real, square: Real, h: Real) -> Real:
     return np.ascontiguousarray(np.stack(parts, axis=1))
 
 
-class _Steps(NamedTuple):
+class _Advance(NamedTuple):
     """Modes and times, any one shape."""
 
     sigma: Real  # [1/s]
@@ -89,7 +89,7 @@ def _integrals(sigma: Real, square: Real, h: Real) -> tuple[Real, Real, Real]:
     own = rates(sigma, square)
     split = np.sqrt(np.abs(sigma**2 - square))
     near, far = own.real.T
-    steps = _Steps(*np.broadcast_arrays(sigma, square, split, near, far, h[:, None]))
+    steps = _Advance(*np.broadcast_arrays(sigma, square, split, near, far, h[:, None]))
     result = np.empty((3, len(h), len(sigma)))
     swings = np.broadcast_to(square > sigma**2, result.shape[1:])
     short = np.abs(own).max(axis=1) * steps.t <= SHORT
@@ -101,11 +101,11 @@ def _integrals(sigma: Real, square: Real, h: Real) -> tuple[Real, Real, Real]:
         (~short & ~swings & ~slow, _falling),
     ):
         if use.any():
-            result[:, use] = integrals(_Steps(*(one[use] for one in steps)))
+            result[:, use] = integrals(_Advance(*(one[use] for one in steps)))
     return result[0], result[1], result[2]
 
 
-def _series(steps: _Steps) -> Real:
+def _series(steps: _Advance) -> Real:
     """Sum S = sum_n c_n, (n + 1) c_n = -2 sigma t c_(n-1) - square t^2/n c_(n-2), and integrals."""
     t = steps.t
     drag, spring = 2 * steps.sigma * t, steps.square * t * t
@@ -119,14 +119,14 @@ def _series(steps: _Steps) -> Real:
     return result
 
 
-def _swinging(steps: _Steps) -> Real:
+def _swinging(steps: _Advance) -> Real:
     """Return S = e^(-sigma t) sin(w t)/w, and its integrals."""
     t, turn = steps.t, steps.split * steps.t
     decay = np.exp(-steps.sigma * t)
     return _integrated(steps, decay * t * np.sinc(turn / np.pi), decay * np.cos(turn))
 
 
-def _falling(steps: _Steps) -> Real:
+def _falling(steps: _Advance) -> Real:
     """Return the same where both rates are real."""
     t = steps.t
     slower = np.exp(np.maximum(steps.near, steps.far) * t)
@@ -134,13 +134,13 @@ def _falling(steps: _Steps) -> Real:
     return _integrated(steps, slower * t * _mean(apart), slower * (1 + np.expm1(apart) / 2))
 
 
-def _integrated(steps: _Steps, S: Real, C: Real) -> Real:
+def _integrated(steps: _Advance, S: Real, C: Real) -> Real:
     """Integrate S'' + 2 sigma S' + square S = 0 with S' = C - sigma S, once and twice."""
     P = (1 - C - steps.sigma * S) / steps.square
     return np.stack([S, P, (steps.t - 2 * steps.sigma * P - S) / steps.square])
 
 
-def _creeping(steps: _Steps) -> Real:
+def _creeping(steps: _Advance) -> Real:
     """Return them where one rate is nearly 0: divided differences of e^(s t) and its integrals."""
     t = steps.t
     one, other = (
