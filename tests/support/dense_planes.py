@@ -41,7 +41,7 @@ class Line:
         self.station = np.unique([0.0, rope.length, *stand, *edges])
         self._cut(self.station)
         tension = self.tension()
-        self._cut(self._edges(np.abs(tension).max(), waves=tension.min() < 0))
+        self._cut(self._edges(np.abs(tension).max(), tension.min()))
 
     def _cut(self, edge):
         self.edge = edge
@@ -53,7 +53,7 @@ class Line:
             if isinstance(part, rd.AddedMass):
                 self.density += self._within(part) * part.linear_density
 
-    def _edges(self, most, *, waves):
+    def _edges(self, most, least_tension):
         """Stations, and between them places that lie closer where bending ends in a layer."""
         layer = self.rope.length / 8
         if self.bends:
@@ -63,7 +63,9 @@ class Line:
             layer = min(layer, 2 * math.sqrt(least / max(most, 1e-300)))
             if self.scene.torque:
                 layer = min(layer, 2 * least / abs(self.scene.torque))
-        longest = 2 * layer if self.scene.torque or waves else math.inf
+        elif least_tension > 0:  # waves are short where a string is nearly slack
+            layer = min(layer, self.rope.length * least_tension / most)
+        longest = 2 * layer if self.scene.torque or least_tension < 0 else math.inf
         edge = []
         for a, b in itertools.pairwise(self.station):
             half = [0.0]
