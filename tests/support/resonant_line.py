@@ -38,7 +38,9 @@ def resonant(seed, kind):
         scene, f, *points = random_spans(seed)
         scene = scene.replace(damping=None)
         exact = Continuum(scene, coupled(scene, points[0][0]))
-        while Law(scene, exact.coordinates, 1, 1, -(omega_of(f) ** 2)).wavenumber > MOST_RADIANS:
+        still = waves_of(scene, exact, 0.0)
+        # waves of a taut rope that stands still are no shorter at any lower frequency
+        while waves_of(scene, exact, f) > max(MOST_RADIANS, still):
             f /= 10
         return Resonant(scene.compile(), points, exact, points, f / 3)
     line = random_line(seed)
@@ -52,6 +54,11 @@ def resonant(seed, kind):
     return Resonant(
         model, points, Exact(model, model.component_of(points[0][0])), places, line.frequency or 1.0
     )
+
+
+def waves_of(scene, exact, f):
+    """The largest wavenumber of a scene."""
+    return Law(scene, exact.coordinates, 1, 1, -(omega_of(f) ** 2)).wavenumber
 
 
 def crossing(line, random):
