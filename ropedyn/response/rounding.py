@@ -85,7 +85,10 @@ def bound_of(chain: Chain, factor: Complex, drives: Ports, responses: Ports) -> 
     # coordinates that scatter together round by each other: by the mean of all, or that on top
     mean = _energies(_added(moved, axis=2), _added(pulled, axis=2), d, r) / len(z)
     wave = here + pulled[d, None] * pulled[r]
-    wave = np.maximum(wave[:, :, 1:], wave[:, :, :-1]) * _radians(chain, stations, factor)
+    turn = _radians(chain, stations, factor)
+    wave = np.maximum(wave[:, :, 1:], wave[:, :, :-1]) * turn
+    # motion at one end times force at the other: by waves F - I is rounded, however small F is
+    wave += np.minimum(turn, 1.0) * _across(moved, pulled, d, r)
     own = _added(here, axis=3)
     own = np.where(_mixes(chain, stations.node), own + mean, np.maximum(own, mean))
     energy = OF_STATIONS * np.sqrt(_added(own**2, axis=2))
@@ -104,6 +107,16 @@ def _energies(moved: Real, pulled: Real, drives: slice, responses: slice) -> Rea
     """Return sizes of what the fields of drives and responses do to each other at stations."""
     both_of = moved[responses] + pulled[responses]
     return moved[drives, None] * both_of + pulled[drives, None] * moved[responses]
+
+
+def _across(moved: Real, pulled: Real, drives: slice, responses: slice) -> Real:
+    """Return sizes of what fields at one end of stretches do to those at the other."""
+    left, right = np.s_[:, :-1], np.s_[:, 1:]
+    sizes = []
+    for one, other in ((left, right), (right, left)):
+        sizes.append(moved[one][drives, None] * pulled[other][responses])
+        sizes.append(pulled[one][drives, None] * moved[other][responses])
+    return _added(np.stack(sizes), axis=0)
 
 
 def _mixes(chain: Chain, node: Index) -> Flags:
