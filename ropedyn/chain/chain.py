@@ -186,12 +186,10 @@ class Chain(NamedTuple):
 
     @property
     def section_loss(self) -> float:
-        """What rounding in continuous spans grows by where bending twists or pulls: 1/det of S.
+        """What rounding grows by where bending twists or pulls: 1/det of S.
 
         S is the section's flexibility over the root of its diagonal: 1 without coupling.
         """
-        if self.inertia is None:
-            return 1.0
         S = self.flexibility[self.flexibility[:, :2, 2].any(axis=1)]
         size = np.sqrt(np.diagonal(S, axis1=1, axis2=2))
         size = np.where(size > 0, size, 1.0)

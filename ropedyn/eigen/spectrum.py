@@ -166,7 +166,8 @@ def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> C
     eigenvalue, error, certified, shape, motion, most, sweeps, redone = _core.certify(
         chain, wanted, _upper(limit), shaped
     )
-    error += 16 * np.finfo(float).eps * (chain.section_loss - 1) * np.abs(eigenvalue)
+    if chain.inertia is not None:
+        error += 16 * np.finfo(float).eps * (chain.section_loss - 1) * np.abs(eigenvalue)
     if not np.isfinite(eigenvalue[:most]).all() or not np.isfinite(error[:most]).all():
         raise SolveError("the numbers of the modes overflow: check the units")
     return ComponentModes(

@@ -121,7 +121,8 @@ def _across(moved: Real, pulled: Real, drives: slice, responses: slice) -> Real:
 
 def _mixes(chain: Chain, node: Index) -> Flags:
     """Say where one coordinate is made of others: in coupled sections, at hinges, (stations, 1)."""
-    coupled = np.full((len(node), 1), chain.section_loss > 1)
+    own = np.eye(chain.flexibility.shape[1])
+    coupled = np.full((len(node), 1), (chain.flexibility * (1 - own)).any())
     if chain.hinge is None:
         return coupled
     opens = chain.hinge[chain.term_of[node]] > 0

@@ -120,6 +120,22 @@ def test_rounding_error_of_very_many_lines_is_no_useless_bound(many, claim):
     claim(median_of_ratio(*many))
 
 
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(500288, id="bending fades within an element"),
+        pytest.param(501668, id="pushed, twist and bending nearly one"),
+        pytest.param(503597, id="twist and pull nearly one"),
+    ],
+)
+def test_rounding_error_bounds_what_the_band_finds_where_little_is_left(seed):
+    # by forces and motion as unknowns these lines are right to the last digits
+    line = random_line(seed)
+    (value, estimate), (other, wrong) = (answer(line, solver) for solver in ("sweep", "band"))
+    assert wrong < 0.1 * estimate
+    assert abs(value - other) <= (estimate + wrong) * abs(other)
+
+
 # resonances and antiresonances -------------------------------------------------------------------
 
 
