@@ -73,6 +73,7 @@ DESCRIBED = {
         "youngs_modulus": (2e11, "N/m^2", "GPa"),
         "density": (7800.0, "kg/m^3", "g/cm^3"),
         "damping_ratio": (0.01, "", "percent"),
+        "poissons_ratio": (0.3, "", "percent"),
     },
     rd.Stop: {
         "x": (0.5, "m", "cm"),
@@ -86,6 +87,7 @@ DESCRIBED = {
     rd.ModalDamping: {"ratio": (0.02, "", "percent")},
     rd.WireFriction: {},
     rd.Tension: {
+        "friction": (0.2, "", "percent"),
         "mean": (300.0, "N", "kgf"),
         "amplitude": (30.0, "N", "lbf"),
         "frequency": (7.0, "Hz", "rad/s"),
@@ -422,7 +424,7 @@ def test_units_of_a_drive_are_those_of_its_coordinate():
 
 EVERYTHING = rd.Scene(
     described(rd.Rope),
-    tension=described(rd.Tension),
+    tension=described(rd.Tension, friction=0.0),
     gravity=dataclasses.replace(described(rd.Gravity), own_weight=False),
     ends=(
         rd.End(

@@ -231,7 +231,7 @@ def said_of_numbers():
 
 def test_numbers_of_the_page_of_commands_are_those_of_the_code():
     page = (ROOT / "docs/command_line.md").read_text(encoding="utf-8")
-    said = [*said_of_numbers(), *("2015 study", "four figures")]
+    said = [*said_of_numbers(), *("2015 study", "five figures")]
     assert [one for one in said if one not in page] == []
     left = re.sub(r"^```.*?^```|`[^`]*`|\{[^}]*\}", "", page, flags=re.M | re.S)
     for one in said:
@@ -239,9 +239,9 @@ def test_numbers_of_the_page_of_commands_are_those_of_the_code():
     assert re.findall(r"(?<![\w.])\d+", left) == []
 
 
-def test_the_study_draws_four_figures(tmp_path, capsys):
+def test_the_study_draws_five_figures(tmp_path, capsys):
     assert main(["study", "--folder", str(tmp_path)]) == 0
-    assert len(list(tmp_path.glob("*.png"))) == capsys.readouterr().out.count("figure: ") == 4
+    assert len(list(tmp_path.glob("*.png"))) == capsys.readouterr().out.count("figure: ") == 5
 
 
 def texts_of_help():
