@@ -123,7 +123,7 @@ def plot_history(history: History, ax: Axes) -> None:
         ax.plot(history.time, value, linewidth=1.0, label=name)
     ax.set(xlabel="time [s]", ylabel=with_unit(ax, history.quantity), title="motion over time")
     light_grid(ax)
-    ax.legend(fontsize="small")
+    legend(ax)
 
 
 @plots(RingDown)

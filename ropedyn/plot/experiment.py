@@ -18,7 +18,18 @@ from ..experiment.plan.wire_shifts import WireShifts
 from ..experiment.track.track import Track
 from ..scene.bench.static_test import StaticTest
 from ..scene.path import unit_of
-from .figure import BLUE, GREEN, ORANGE, RED, colour, light_grid, plots, unbroken, with_unit
+from .figure import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    RED,
+    colour,
+    legend,
+    light_grid,
+    plots,
+    unbroken,
+    with_unit,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -248,7 +259,7 @@ def plot_track(track: Track, ax: Axes) -> None:
     ax.set(xlabel="time" if track.since else "time [day]", ylabel="tension [N]")
     ax.set_title(f"tension over time, {told.sum()} of {len(time)} records")
     light_grid(ax)
-    ax.legend(fontsize="small")
+    legend(ax)
 
 
 @plots(ResponseFit)
@@ -259,7 +270,7 @@ def plot_response_fit(fit: ResponseFit, ax: Axes) -> None:
         ax.semilogy(fit.frequency, np.abs(measured), ".", color=line.get_color(), markersize=3)
     ax.set(xlabel="frequency [Hz]", ylabel=with_unit(ax, f"amplitude of the {fit.quantity}"))
     ax.set_title(_found(fit))
-    ax.legend(title="line calculated, dots measured", fontsize="small")
+    legend(ax, "line calculated, dots measured")
     light_grid(ax)
 
 
@@ -293,5 +304,5 @@ def plot_wire_shifts(shifts: WireShifts, ax: Axes) -> None:
             ax.semilogy(shifts.x, share, style, color=colour(k), label=name)
         ax.axhline(100 * shifts.least[k] / f, color=colour(k), linewidth=0.8, alpha=0.6)
     ax.set(xlabel="position along the rope [m]", ylabel="shift of frequency, amount [%]")
-    ax.legend(fontsize="small", ncols=2)
+    legend(ax)
     light_grid(ax)

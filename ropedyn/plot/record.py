@@ -9,7 +9,7 @@ import numpy as np
 from ..base.unit import label
 from ..curves.record.record import Record
 from ..curves.record.spectrum import RecordSpectrum, segment_of
-from .figure import light_grid, plots, with_unit
+from .figure import legend, light_grid, plots, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,7 +26,7 @@ def plot_record(record: Record, ax: Axes) -> None:
         ax.plot(record.time, row, linewidth=0.6, label=name + more, color=color)
     ax.set(xlabel="time [s]", ylabel=with_unit(ax, record.quantity), title="record")
     light_grid(ax)
-    ax.legend(fontsize="small")
+    legend(ax)
 
 
 @plots(RecordSpectrum)
@@ -39,7 +39,7 @@ def plot_record_spectrum(spectrum: RecordSpectrum, ax: Axes) -> None:
     ax.set_title(f"{spectrum.averages:g} averages, window {spectrum.window}")
     ax.grid(True, which="both", color="0.92")
     if ax.lines:
-        ax.legend(fontsize="small")
+        legend(ax)
 
 
 @plots(Record, "spectrogram")

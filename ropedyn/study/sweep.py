@@ -87,6 +87,9 @@ class Sweep(Sequence[Result | None], Generic[Result]):
     def __repr__(self) -> str:
         return f"<Sweep of {len(self)} scenes, {len(self.failed)} failed>"
 
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
+
     def table(self) -> Table:
         """Return one row for each scene.
 

@@ -313,3 +313,8 @@ def test_a_function_that_cannot_be_sent_is_refused_before_anything_runs(pool, da
     lock = threading.Lock()
     with pytest.raises(TypeError, match="function must be one that can be pickled"):
         rd.sweep(lambda scene: lock, SCENES, executor=dask_executor)
+
+
+def test_a_notebook_shows_a_sweep_as_its_table():
+    sweep = rd.sweep(abs, [-1, 2])
+    assert "<table>" in sweep._repr_html_() == sweep.table()._repr_html_()
