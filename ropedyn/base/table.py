@@ -132,7 +132,7 @@ class Table:
 
     def __repr__(self) -> str:
         beyond = _wrapped(self._heading(0, 0), WIDTH).count("\n")
-        return self.to_text(rows=max(3, SHOWN - beyond), width=WIDTH)
+        return self.to_text(rows=max(1, SHOWN - beyond), width=WIDTH)
 
     def to_text(self, *, rows: int | None = None, width: int | None = None) -> str:
         """Return the table as text: whole, or its head and tail and the columns that fit.

@@ -219,6 +219,13 @@ def test_text_has_a_title_a_head_and_a_line_for_each_row(name):
     assert len(lines) == 2 + len(table.rows)
 
 
+@pytest.mark.parametrize("lines", range(1, 10))
+def test_a_title_of_many_lines_leaves_a_screen(lines):
+    title = "\n".join(["of many words"] * lines)
+    shown = repr(rd.Table.of(title, {"n": range(100)})).splitlines()
+    assert len(shown) == 12 and shown[lines - 1] == "of many words, 100 rows"
+
+
 @pytest.mark.parametrize("name", ANSWERS)
 def test_a_prompt_shows_a_screen_and_print_a_page(name):
     answer = ANSWERS[name]
