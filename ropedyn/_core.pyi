@@ -190,7 +190,7 @@ def space_triples(
     rates: _Complex, series: _Real, length: float, halvings: int, doublings: int, gentle: float, /
 ) -> tuple[_Complex, int, bool]: ...
 def space_factor(
-    D: _Real, G: _Real, Q: _Real, N: _Real, fixed: NDArray[np.uint8], /
+    D: _Complex, G: _Complex, Q: _Complex, N: _Complex, fixed: NDArray[np.uint8], /
 ) -> tuple[_Real, _Integers, int]: ...
 def space_solve(factors: _Real, pivots: _Integers, right: _Real, /) -> _Real: ...
 def space_respond(
@@ -202,6 +202,27 @@ def space_respond(
     right: _Complex,
     /,
 ) -> _Complex: ...
+def space_apply(
+    D: _Complex,
+    G: _Complex,
+    Q: _Complex,
+    N: _Complex,
+    fixed: NDArray[np.uint8],
+    vectors: _Complex,
+    /,
+) -> _Complex: ...
+def space_iterate(
+    D: _Complex,
+    G: _Complex,
+    Q: _Complex,
+    N: _Complex,
+    fixed: NDArray[np.uint8],
+    factors: _Real,
+    pivots: _Integers,
+    vectors: _Real,
+    times: int,
+    /,
+) -> tuple[_Real, _Real]: ...
 def space_count(
     rope: _Space, component: _Integers, eigenvalue: _Real, scale: _Real, /
 ) -> _Real: ...

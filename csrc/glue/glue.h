@@ -131,6 +131,8 @@ PyObject *py_space_count(PyObject *module, PyObject *arguments);
 PyObject *py_space_factor(PyObject *module, PyObject *arguments);
 PyObject *py_space_solve(PyObject *module, PyObject *arguments);
 PyObject *py_space_respond(PyObject *module, PyObject *arguments);
+PyObject *py_space_apply(PyObject *module, PyObject *arguments);
+PyObject *py_space_iterate(PyObject *module, PyObject *arguments);
 PyObject *py_recurrence(PyObject *module, PyObject *arguments);
 PyObject *py_collocate(PyObject *module, PyObject *arguments);
 PyObject *py_volterra(PyObject *module, PyObject *arguments);

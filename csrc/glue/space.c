@@ -92,15 +92,14 @@ done:
     return result;
 }
 
-/* a view of D, G, Q, N and what is fixed, of numbers of a type: 0, or -1 and an exception */
-static int band_parse(PyObject *const o[5], int type, struct py_kept *kept,
-                      struct rd_space_band *band)
+/* a view of D, G, Q, N and what is fixed: 0, or -1 and an exception */
+static int band_parse(PyObject *const o[5], struct py_kept *kept, struct rd_space_band *band)
 {
     static const char *const names[] = {"D", "G", "Q", "N"};
     const double *blocks[4];
     npy_intp shape[] = {-1, -1, -1, -1};
     for (int k = 0; k < 4; k++) {
-        if ((blocks[k] = py_keep(kept, o[k], type, 4, shape, names[k])) == NULL)
+        if ((blocks[k] = py_keep(kept, o[k], NPY_CDOUBLE, 4, shape, names[k])) == NULL)
             return -1;
         shape[0] = py_kept_length(kept, 0);
         shape[1] = py_kept_length(kept, 1) + (k == 2);
@@ -115,7 +114,7 @@ static int band_parse(PyObject *const o[5], int type, struct py_kept *kept,
         .width = (size_t)shape[2],
         .lines = (size_t)shape[0],
         .parts = (size_t)parts,
-        .numbers = type == NPY_DOUBLE ? 1 : 2,
+        .numbers = 2,
         .D = blocks[0],
         .G = blocks[1],
         .Q = blocks[2],
@@ -125,7 +124,7 @@ static int band_parse(PyObject *const o[5], int type, struct py_kept *kept,
     return band->fixed == NULL ? -1 : 0;
 }
 
-/* bands of real numbers, their pivots, and which line is singular, or how many there are */
+/* the real parts of bands, factored, their pivots, and which line is singular, or how many there are */
 PyObject *py_space_factor(PyObject *module, PyObject *arguments)
 {
     (void)module;
@@ -134,7 +133,7 @@ PyObject *py_space_factor(PyObject *module, PyObject *arguments)
     struct rd_space_band band;
     if (!PyArg_ParseTuple(arguments, "OOOOO", o, o + 1, o + 2, o + 3, o + 4))
         return NULL;
-    if (band_parse(o, NPY_DOUBLE, &kept, &band) < 0)
+    if (band_parse(o, &kept, &band) < 0)
         goto done;
     const npy_intp lines = (npy_intp)band.lines;
     const npy_intp size = (npy_intp)((2 * band.parts + 1) * band.width);
@@ -192,6 +191,86 @@ done:
     return result;
 }
 
+PyObject *py_space_apply(PyObject *module, PyObject *arguments)
+{
+    (void)module;
+    PyObject *o[5], *given, *result = NULL;
+    struct py_kept kept = {0};
+    struct rd_space_band band;
+    if (!PyArg_ParseTuple(arguments, "OOOOOO", o, o + 1, o + 2, o + 3, o + 4, &given))
+        return NULL;
+    if (band_parse(o, &kept, &band) < 0)
+        goto done;
+    const npy_intp size = (npy_intp)((2 * band.parts + 1) * band.width);
+    const npy_intp shape[] = {(npy_intp)band.lines, -1, size};
+    const double _Complex *x = py_keep(&kept, given, NPY_CDOUBLE, 3, shape, "vectors");
+    if (x == NULL)
+        goto done;
+    const npy_intp columns = py_kept_length(&kept, 1);
+    result = py_new(NPY_CDOUBLE, 3, (npy_intp[]){(npy_intp)band.lines, columns, size});
+    if (result == NULL)
+        goto done;
+    double _Complex *to = PyArray_DATA((PyArrayObject *)result);
+    Py_BEGIN_ALLOW_THREADS
+    rd_space_apply(&band, (size_t)columns, x, to);
+    Py_END_ALLOW_THREADS
+done:
+    py_kept_release(&kept);
+    return result;
+}
+
+/* vectors that were iterated, and their forms */
+PyObject *py_space_iterate(PyObject *module, PyObject *arguments)
+{
+    (void)module;
+    PyObject *o[5], *factor, *rows, *given, *form = NULL, *result = NULL;
+    PyArrayObject *x = NULL;
+    double *work = NULL;
+    int times;
+    struct py_kept kept = {0};
+    struct rd_space_band band;
+    if (!PyArg_ParseTuple(arguments, "OOOOOOOOi", o, o + 1, o + 2, o + 3, o + 4, &factor, &rows,
+                          &given, &times))
+        return NULL;
+    if (check_power(times, "times") < 0 || band_parse(o, &kept, &band) < 0)
+        goto done;
+    const npy_intp lines = (npy_intp)band.lines;
+    const npy_intp size = (npy_intp)((2 * band.parts + 1) * band.width);
+    const npy_intp wide = (npy_intp)rd_space_rows(band.width);
+    const double *lu =
+        py_keep(&kept, factor, NPY_DOUBLE, 3, (npy_intp[]){lines, size, wide}, "factors");
+    const int32_t *pivot =
+        lu == NULL ? NULL : py_keep(&kept, rows, NPY_INT32, 2, (npy_intp[]){lines, size}, "pivot");
+    PyArrayObject *vectors =
+        pivot == NULL ? NULL
+                      : py_array(given, NPY_DOUBLE, 3, (npy_intp[]){lines, -1, size}, "vectors");
+    if (vectors == NULL)
+        goto done;
+    x = (PyArrayObject *)PyArray_NewCopy(vectors, NPY_CORDER);
+    Py_DECREF(vectors);
+    if (x == NULL)
+        goto done;
+    const npy_intp columns = PyArray_DIM(x, 1);
+    form = py_new(NPY_DOUBLE, 4, (npy_intp[]){lines, 2, columns, columns});
+    work = PyMem_RawMalloc((size_t)(columns * size + 1) * sizeof *work);
+    if (form == NULL || work == NULL) {
+        if (work == NULL)
+            PyErr_NoMemory();
+        goto done;
+    }
+    double *to = PyArray_DATA(x), *forms = PyArray_DATA((PyArrayObject *)form);
+    Py_BEGIN_ALLOW_THREADS
+    rd_space_iterate(&band, (size_t)columns, lu, pivot, (size_t)times, to, forms, work);
+    Py_END_ALLOW_THREADS
+    result = Py_BuildValue("OO", x, form);
+done:
+    PyMem_RawFree(work);
+    Py_XDECREF(form);
+    Py_XDECREF(x);
+    py_kept_release(&kept);
+    return result;
+}
+
 PyObject *py_space_respond(PyObject *module, PyObject *arguments)
 {
     PyObject *o[5], *right, *result = NULL;
@@ -201,7 +280,7 @@ PyObject *py_space_respond(PyObject *module, PyObject *arguments)
     struct rd_space_band band;
     if (!PyArg_ParseTuple(arguments, "OOOOOO", o, o + 1, o + 2, o + 3, o + 4, &right))
         return NULL;
-    if (band_parse(o, NPY_CDOUBLE, &kept, &band) < 0)
+    if (band_parse(o, &kept, &band) < 0)
         goto done;
     const npy_intp size = (npy_intp)((2 * band.parts + 1) * band.width);
     const npy_intp shape[] = {(npy_intp)band.lines, -1, size};

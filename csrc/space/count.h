@@ -83,7 +83,11 @@ enum {
     GRADED = 4096,                /* parts of a piece along which tension or curvature change */
     TRIED = 2,                    /* rooms of families: of the best and of the next */
     INNER = -1,                   /* a node that nothing stands at */
+    MOST_HALVINGS = 60,
 };
+
+/* of the first part that is summed as a series */
+static const double RADIANS = 0.5;
 
 /* of joints of parts that are interpolated from others: far from the resonances of any */
 static const double STEADY = 4;
@@ -244,11 +248,43 @@ static int doubled(struct counting *c, struct family *f, double *below)
     return 1;
 }
 
+/* a norm of [[Phi, S], [q, -Phi^T]] of the piece, the lesser of those by rows and by columns */
+static double size_of_rates(const struct counting *c)
+{
+    double row[2 * WIDE] = {0}, column[2 * WIDE] = {0}, by_rows = 0, by_columns = 0;
+    for (size_t i = 0; i < WIDE; i++)
+        for (size_t k = 0; k < WIDE; k++) {
+            const double *at = c->E + i * WIDE + k;
+            const double phi = fabs(at[0]), S = fabs(at[WIDE * WIDE]),
+                         q = fabs(at[2 * WIDE * WIDE]);
+            row[i] += phi + S;
+            row[WIDE + i] += q;
+            row[WIDE + k] += phi;
+            column[k] += phi + q;
+            column[WIDE + k] += S;
+            column[WIDE + i] += phi;
+        }
+    for (size_t i = 0; i < 2 * WIDE; i++) {
+        by_rows = fmax(by_rows, row[i]);
+        by_columns = fmax(by_columns, column[i]);
+    }
+    return fmin(by_rows, by_columns);
+}
+
+/* how often piece p is halved for its series */
+static int halvings_of(const struct counting *c, size_t p)
+{
+    if (c->rope->fields > 1)
+        return c->rope->halvings[p];
+    const double halved = ceil(log2(size_of_rates(c) * c->rope->length[p] / RADIANS));
+    return halved > 0 ? (int)fmin(halved, MOST_HALVINGS) : 0;
+}
+
 /* parts of one `odd`th of piece p, each of a series */
 static void family_fill(struct counting *c, size_t p, size_t row, int odd, struct family *f)
 {
     const struct rd_space *rope = c->rope;
-    const struct rd_space_run run = {.halvings = rope->halvings[p], .nodes = rope->nodes[p]};
+    const struct rd_space_run run = {.halvings = halvings_of(c, p), .nodes = rope->nodes[p]};
     struct rates rates;
     family_begin(&run, f->at, f);
     for (int i = 0; i < f->count; i++) {

@@ -25,13 +25,14 @@ static void put(const struct filling *f, size_t row, size_t column, const double
             if (block == NULL && i == j)
                 *at += sign;
             if (block != NULL)
-                *at += sign * block[turned ? j * W + i : i * W + j];
+                *at += sign * block[f->band->numbers * (turned ? j * W + i : i * W + j)];
         }
 }
 
 static void fill(const struct rd_space_band *band, size_t line, double *to)
 {
-    const size_t W = band->width, own = W * W, parts = band->parts, size = (2 * parts + 1) * W;
+    const size_t W = band->width, own = band->numbers * W * W, parts = band->parts;
+    const size_t size = (2 * parts + 1) * W;
     const size_t rows = rd_space_rows(W);
     const struct filling f = {band, band->fixed + line * size, to};
     memset(to, 0, size * rows * sizeof *to);
@@ -57,7 +58,6 @@ size_t rd_space_factor(const struct rd_space_band *band, double *factor, int32_t
 {
     const size_t size = (2 * band->parts + 1) * band->width, rows = rd_space_rows(band->width);
     const lapack_int n = (lapack_int)size, beside = (lapack_int)rd_space_beside(band->width);
-    assert(band->numbers == 1);
     for (size_t k = 0; k < band->lines; k++) {
         double *own = factor + k * size * rows;
         fill(band, k, own);

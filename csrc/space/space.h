@@ -61,7 +61,7 @@ struct rd_space_run {
 struct rd_space {
     size_t components, width, pieces, fields;
     const double *length;    /* (pieces)          [m] */
-    const int32_t *halvings; /* (pieces)  */
+    const int32_t *halvings; /* (pieces)  where something changes; else each count finds its own */
     const int32_t *nodes;    /* (pieces)  */
     const double *series;    /* (sum of nodes, fields, RD_SPACE_ORDERS) */
     /* of each component: */
@@ -100,13 +100,23 @@ struct rd_space_band {
     const uint8_t *fixed;    /* (lines, size) */
 };
 
-/* Such bands of real numbers, factored by columns (lines, size, rd_space_rows(width)) as LAPACK does;
+/* The real parts of such bands, factored by columns (lines, size, rd_space_rows(width)) as LAPACK does;
    pivot (lines, size). Returns the first that is singular, or `lines`. */
 size_t rd_space_factor(const struct rd_space_band *band, double *factor, int32_t *pivot);
 
 /* x (lines, columns, size): right sides, solved in place */
 void rd_space_solve(size_t width, size_t lines, size_t size, size_t columns, const double *factor,
                     const int32_t *pivot, double *x);
+
+/* y = A x of columns (lines, columns, size), A complex; rows that are fixed are 0, and columns count. */
+void rd_space_apply(const struct rd_space_band *band, size_t columns, const double _Complex *x,
+                    double _Complex *y);
+
+/* x (lines, columns, size) <- Re(A)^-1 Im(A) x, so many times, its columns made orthonormal before and
+   after each, and form (lines, 2, columns, columns) = x^T Re(A) x and x^T Im(A) x; A complex and factored,
+   work (columns, size). */
+void rd_space_iterate(const struct rd_space_band *band, size_t columns, const double *factor,
+                      const int32_t *pivot, size_t times, double *x, double *form, double *work);
 
 /* Right sides x (lines, columns, size) of bands of complex numbers, solved in place, several lines side
    by side; not finite where one is singular. Takes what it needs from the workspace (with base NULL:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _core
 from ..base.array import Complex, Flags, Index, Real
@@ -20,6 +21,9 @@ from ..base.computed import computed
 from ..base.errors import SolveError
 from .rope import Carried, Factors, SpaceRope, halvings, scaled_rates, size_of
 from .samples import coefficients, series_of
+
+Band = tuple[Complex, Complex, Complex, Complex, NDArray[np.uint8]]
+"""D, G, Q, N and which rows stand for nothing, shape (n, size)."""
 
 ONE = np.zeros(1, dtype=np.intp)  # All six coordinates, of what is wound.
 GENTLE = 1.5  # The largest entry of a joint's inverse within a part.
@@ -86,23 +90,6 @@ class Assembly:
         within = np.diff(self.node)[:, None] // equal * np.arange(equal)
         return np.append((self.node[:-1, None] + within).ravel(), self.node[-1])
 
-    @computed
-    def whole(self) -> Blocks:
-        """What multiplies complex vectors."""
-        return Blocks(self.D, self.G, self.Q, self.N, self.held, 1.0)
-
-    @computed
-    def real(self) -> Blocks:
-        """What multiplies real vectors, the real part."""
-        D, G, Q, N = (np.ascontiguousarray(a.real) for a in (self.D, self.G, self.Q, self.N))
-        return Blocks(D, G, Q, N, self.held, 1.0)
-
-    @computed
-    def imag(self) -> Blocks:
-        """The imaginary part."""
-        D, G, Q, N = (np.ascontiguousarray(a.imag) for a in (self.D, self.G, self.Q, self.N))
-        return Blocks(D, G, Q, N, self.held, 0.0)
-
     def together(self, u: Any, f: Any) -> Any:
         """Return rows in the order of the band, of (n, parts + 1 and parts, width, c)."""
         both = np.zeros((len(u), 2 * self.parts + 1, *u.shape[2:]), dtype=np.result_type(u, f))
@@ -114,53 +101,34 @@ class Assembly:
         both = x.reshape(len(x), 2 * self.parts + 1, self.width, -1)
         return both[:, ::2], both[:, 1::2]
 
-    @property
-    def fixed(self) -> Any:
-        """Rows of the band that stand for nothing, shape (n, size)."""
+    @computed
+    def band(self) -> Band:
+        """What the core takes."""
         both = np.zeros((len(self.D), 2 * self.parts + 1, self.width), dtype=np.uint8)
         both[:, ::2], both[:, 1::2] = self.held, self.absent[:, None]
-        return both.reshape(len(both), -1)
+        return self.D, self.G, self.Q, self.N, both.reshape(len(both), -1)
 
     def factored(self) -> Factored:
         """Return the real parts of all lines factored."""
-        lu, pivot, failed = _core.space_factor(*self.real[:4], self.fixed)
+        lu, pivot, failed = _core.space_factor(*self.band)
         if failed < len(lu):
             raise SolveError("singular")
-        return Factored(lu, pivot)
+        return Factored(self.band, lu, pivot)
 
     def respond(self, right: Any) -> Complex:
         """Return the solutions of columns (n, rows, columns), not finite where singular."""
-        x = _core.space_respond(self.D, self.G, self.Q, self.N, self.fixed, right.swapaxes(1, 2))
-        return x.swapaxes(1, 2)
+        return _core.space_respond(*self.band, right.swapaxes(1, 2)).swapaxes(1, 2)
 
-
-class Blocks(NamedTuple):
-    """Matrices of the parts, and what stands beside D."""
-
-    D: Any
-    G: Any
-    Q: Any
-    N: Any
-    held: Flags
-    one: float
-
-    def apply(self, u: Any, f: Any) -> tuple[Any, Any]:
-        """Return p and d of motion (n, parts + 1, width, columns) and force."""
-        d = -(self.D @ u[:, :-1] + self.G @ f)
-        p = self.N @ u
-        p[:, :-1] += self.Q @ u[:, :-1] - self.D.swapaxes(2, 3) @ f
-        if self.one:
-            d += u[:, 1:] - u[:, :-1]
-            p[:, 1:] += f
-            p[:, :-1] -= f
-        p[self.held] = 0.0
-        return p, d
+    def apply(self, x: Any) -> Complex:
+        """Return A x of columns (n, rows, columns)."""
+        return _core.space_apply(*self.band, x.swapaxes(1, 2)).swapaxes(1, 2)
 
 
 @dataclass(frozen=True, eq=False)
 class Factored:
     """Band matrices, factored."""
 
+    band: Band
     lu: Any
     pivot: Any
 
@@ -168,6 +136,11 @@ class Factored:
         """Return the solutions of columns (n, rows, columns)."""
         x: Any = _core.space_solve(self.lu, self.pivot, right.swapaxes(1, 2))
         return x.swapaxes(1, 2)
+
+    def iterated(self, x: Real, times: int) -> tuple[Real, Real, Real]:
+        """Return columns (n, rows, columns) x <- Re(A)^-1 Im(A) x, x^T Re(A) x and x^T Im(A) x."""
+        found, forms = _core.space_iterate(*self.band, self.lu, self.pivot, x.swapaxes(1, 2), times)
+        return found.swapaxes(1, 2), forms[:, 0], forms[:, 1]
 
 
 def assemble(
@@ -184,7 +157,6 @@ def assemble(
     rates = scaled_rates(rope.rates(which, factors), z)
     size = size_of(rates).max(axis=(0, 2))
     width, blocks = z.shape[1], rope.blocks
-    by = blocks.turn[which] * (z[:, None, None, :] / z[:, None, :, None]) - np.eye(width)
     triples, counts = [], []
     for p, length in enumerate(rope.length / equal):
         one = np.ascontiguousarray(coefficients(rates[:, p]))
@@ -199,12 +171,13 @@ def assemble(
     for p, (first, triple) in enumerate(zip(node[:-1], triples)):
         # parts that are alike are one, or all that lie one after another are there
         matrices[:, :, first : node[p + 1]] = np.moveaxis(triple, 2, 0)
-        if by[:, p].any():
-            # F R and R^T Q R of what begins with a kink
-            turn, back = by[:, p], by[:, p].swapaxes(1, 2)
-            D[:, first] = turn + D[:, first] + D[:, first] @ turn
-            own = Q[:, first]
-            Q[:, first] = own + back @ own + own @ turn + back @ own @ turn
+    for p in rope.kinks:
+        # F R and R^T Q R of what begins with a kink
+        first = node[p]
+        turn = blocks.turn[which, p] * (z[:, None, :] / z[:, :, None]) - np.eye(width)
+        back, own = turn.swapaxes(1, 2), Q[:, first]
+        D[:, first] = turn + D[:, first] + D[:, first] @ turn
+        Q[:, first] = own + back @ own + own @ turn + back @ own @ turn
     N = np.zeros((len(rates), node[-1] + 1, width, width), dtype=np.complex128)
     N[:, node] = rope.nodes(which, factors) * (z[:, None, :, None] * z[:, None, None, :])
     doubt = np.zeros(N.shape[:2])
@@ -268,7 +241,7 @@ class LoadedFields(NamedTuple):
 
     def left(self, system: Assembly) -> tuple[Any, Any]:
         """Return what the matrix takes of the loads that is not there."""
-        p, d = system.whole.apply(self.u, self.f)
+        p, d = system.apart(system.apply(system.together(self.u, self.f)))
         return p - self.load, d
 
 

@@ -233,8 +233,7 @@ class SpaceShapes:
     def _form(self, varied: SpaceRope, lines: Any, own: Real) -> Real:
         """Return what an imaginary part adds to x^T A x of vectors (n, rows, columns)."""
         system = assemble(varied, *lines, equal=self.points)
-        added = system.together(*system.imag.apply(*system.apart(own)))
-        form: Real = (own * added).sum(1) / STEP
+        form: Real = (own * system.apply(own).imag).sum(1) / STEP
         return form
 
     @property

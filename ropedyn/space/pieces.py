@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-import math
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -61,53 +61,50 @@ class SpaceSection(NamedTuple):
         return np.diag([*[self.density] * 3, self.polar, *self.rotary])
 
 
-def bend_of(tau: float, kz: float, ky: float) -> Real:
-    """Return how motion that strains nothing changes along the axis, u' = A u, shape (6, 6)."""
-    return np.array(
-        [
-            [0, ky, kz, 0, 0, 0],
-            [-ky, 0, tau, 0, 0, 1],
-            [-kz, -tau, 0, 0, 1, 0],
-            [0, 0, 0, 0, -ky, kz],
-            [0, 0, 0, ky, 0, -tau],
-            [0, 0, 0, -kz, tau, 0],
-        ],
-        dtype=np.float64,
-    )
+def bend_of(rates: Real) -> Real:
+    """Return how motion that strains nothing changes along the axis, u' = A u, shape (s, 6, 6).
+
+    rates : (s, 3) tau, kz, ky.
+    """
+    bend = np.zeros((len(rates), 6, 6))
+    bend[:, :3, :3] = -cross(rates * [1.0, -1.0, 1.0])
+    bend[:, 3:, 3:] = SIGN[3:, 3:] @ bend[:, :3, :3] @ SIGN[3:, 3:]
+    bend[:, 1, 5] = bend[:, 2, 4] = 1.0
+    return bend
 
 
 def cross(v: Any) -> Real:
-    """Return the matrix of a cross product with a vector."""
-    x, y, z = v
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    """Return the matrices of cross products with vectors (.., 3)."""
+    found = np.zeros((*np.shape(v), 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        found[..., k, j], found[..., j, k] = v[..., i], -v[..., i]
+    return found
 
 
 def initial_of(force: Real, moment: Real) -> tuple[Real, Real]:
-    """Return Gamma and K of an initial force (T, V) and moment, vectors along x, y, z.
+    """Return Gamma and K of initial forces (T, V) and moments (s, 3), vectors along x, y, z.
 
     Gamma = [[0, [n]], [0, [m]/2]] and K = T (1 - t t^T) - (V t^T + t V^T)/2 of rotations.
     """
-    gamma, stress = np.zeros((6, 6)), np.zeros((6, 6))
-    gamma[:3, 3:], gamma[3:, 3:] = cross(force), cross(moment) / 2
-    across = np.array([0.0, *force[1:]])
-    stress[3:, 3:] = np.diag([0.0, force[0], force[0]])
-    stress[3, 3:] -= across / 2
-    stress[3:, 3] -= across / 2
+    gamma, stress = np.zeros((2, len(force), 6, 6))
+    gamma[:, :3, 3:], gamma[:, 3:, 3:] = cross(force), cross(moment) / 2
+    stress[:, 4, 4] = stress[:, 5, 5] = force[:, 0]
+    stress[:, 3, 4:] = stress[:, 4:, 3] = -force[:, 1:] / 2
     return SIGN @ gamma @ SIGN, SIGN @ stress @ SIGN
 
 
 def moment_at_rest(
-    section: SpaceSection, bent: bool, torque: float, rates: tuple[float, float, float]
+    section: SpaceSection, bent: bool, torque: float, rates: Real, slope: Real
 ) -> tuple[Real, Real]:
-    """Return the shear and the moment that a torque and bending from straight leave in a rope.
+    """Return shear and moment (s, 3) that a torque and bending from straight leave in a rope.
 
     m = (M + C tau, -B kz, 0), of what is naturally as its axis (M, 0, 0), and with kz' the balance
     m' + omega x m + t x n = 0 asks for V = (0, kz tau (B - C) - kz M, -B kz').
     """
-    tau, kz, slope = rates
+    tau, kz, none = rates[:, 0], rates[:, 1], 0 * slope
     B, C = (section.bending or (0.0,))[0] * bent, (section.torsion or 0.0) * bent
-    shear = np.array([0.0, kz * (tau * (B - C) - torque), -B * slope])
-    return shear, np.array([torque + C * tau, -B * kz, 0.0])
+    shear = np.stack([none, kz * (tau * (B - C) - torque), -B * slope], axis=1)
+    return shear, np.stack([torque + C * tau, -B * kz, none], axis=1)
 
 
 def kink_of(turn: Real) -> Real:
@@ -136,16 +133,19 @@ class Rest(NamedTuple):
         angle = turned + piece.turned(s) - self.ahead
         return self.tension * np.exp(self.friction * angle)
 
-    def load(self, tau: float, kz: float) -> tuple[Real, Real]:
-        """Return shear and moment that a force P along the cylinder of a helix leaves.
+    def load(self, tau: Real, kz: Real) -> tuple[Real, Real]:
+        """Return shear and moment (s, 3) that a force P along the cylinder of a helix leaves.
 
         n = P c, c = (tau, -kz, 0)/omega along the cylinder, and m = -r x n = P R (-c_y, c_x, 0) at
         r = -R z from its axis, R = kz/omega^2.
         """
-        omega = math.copysign(math.hypot(tau, kz), tau)
-        c = np.array([tau, -kz, 0.0]) / omega
+        omega = np.copysign(np.hypot(tau, kz), tau)
+        across, along, none = -kz / omega, tau / omega, 0 * kz
         arm = self.axial * kz / omega**2
-        return np.array([0.0, self.axial * c[1], 0.0]), arm * np.array([-c[1], c[0], 0.0])
+        return (
+            np.stack([none, self.axial * across, none], axis=1),
+            np.stack([-arm * across, arm * along, none], axis=1),
+        )
 
 
 def rope_of(
@@ -157,23 +157,21 @@ def rope_of(
     followed: float = FOLLOWED,
 ) -> SpaceRope:
     """Return the pieces of an axis, nothing at their nodes."""
-    along = range(len(axis.pieces))
-    pieces = [one for k in along for one in _blocks(axis, k, section, rest, followed)]
-    begins, ends = (np.array([one[k] for one in pieces]) for k in (1, 2))
-    starts = np.array([axis.joints[one[0]] for one in pieces])
-    count, samples = len(pieces), SAMPLES if any(one[3] for one in pieces) else 1
-    arrays: dict[str, Any] = {name: np.zeros((count, samples, 6, 6)) for name in SAMPLED}
-    for k, (own, begin, end, _) in enumerate(pieces):
-        s = begin + (end - begin) * sample_places(samples)
-        for name, value in _along(axis, own, s, section, rest).items():
-            arrays[name][k] = value
+    blocks = [
+        one for k in range(len(axis.pieces)) for one in _blocks(axis, k, section, rest, followed)
+    ]
+    begins, lengths = (np.array([one[k] for one in blocks]) for k in (0, 1))
+    count, few = len(blocks), slice(None if any(one.changes for one in blocks) else 1)
+    arrays: dict[str, Any] = {
+        name: np.array([one.along[name][few] for one in blocks]) for name in SAMPLED
+    }
     turn = np.tile(np.eye(6), (count, 1, 1))
     for kink in axis.kinks:
-        turn[np.abs(starts + begins - kink.s).argmin()] = kink_of(kink.turn)
+        turn[np.abs(begins - kink.s).argmin()] = kink_of(kink.turn)
     springs, masses, dashpots = (np.zeros((count + 1, 6, 6)) for _ in range(3))
     gone = np.array([c in absent for c in SIX])
     return SpaceRope(
-        length=ends - begins,
+        length=lengths,
         share=np.ones(count),
         inertia=np.tile(section.inertia(), (count, 1, 1)),
         drag=np.zeros((count, 6, 6)),
@@ -187,43 +185,50 @@ def rope_of(
     )
 
 
+class Block(NamedTuple):
+    """A part of an axis that polynomials follow, by its arc length."""
+
+    begin: float
+    length: float
+    along: dict[str, Real]  # what there is at its samples
+    changes: bool
+
+
 def _blocks(
     axis: Axis, k: int, section: SpaceSection, rest: Rest, followed: float
-) -> list[tuple[int, float, float, bool]]:
-    """Return the parts of piece k, by arc length of it, that polynomials follow, and if any do."""
-    piece, start = axis.pieces[k], axis.joints[k]
+) -> Iterator[Block]:
+    """Yield those of piece k."""
+    piece, start = axis.pieces[k], float(axis.joints[k])
     corners = np.array(section.angle[0]) - start
     inside = corners[(corners > 1e-9 * piece.length) & (corners < (1 - 1e-9) * piece.length)]
     left = list(itertools.pairwise([0.0, *inside, piece.length]))[::-1]
-    found: list[tuple[int, float, float, bool]] = []
     while left:
         begin, end = left.pop()
         s = begin + (end - begin) * sample_places(SAMPLES)
         given = _along(axis, k, s, section, rest)
-        missed = max(tail(values) for values in given.values())
+        changing = [values for values in given.values() if (values != values[0]).any()]
+        missed = max((tail(values) for values in changing), default=0.0)
         if missed > followed and end - begin > 1e-6 * piece.length:
             left += [((begin + end) / 2, end), (begin, (begin + end) / 2)]
             continue
-        changes = any((values != values[0]).any() for values in given.values())
-        found.append((k, begin, end, changes))
-    return found
+        yield Block(start + begin, end - begin, given, bool(changing))
 
 
 def _along(axis: Axis, k: int, s: Real, section: SpaceSection, rest: Rest) -> dict[str, Real]:
     """Return what belongs to arc lengths of piece k, arrays (s, 6, 6)."""
     piece, start = axis.pieces[k], axis.joints[k]
     tension, rates = rest.pull(piece, s, float(axis.turned(start))), piece.rates(s)
-    bend = np.array([bend_of(*one) for one in rates])
+    bend = bend_of(rates)
     string, initial, stress = (np.zeros((len(s), 6, 6)) for _ in range(3))
     if section.bending is None:
         bend[:, 3:] = bend[:, :, 3:] = 0.0
         string[:, 1, 1] = string[:, 2, 2] = 1 / tension
     else:
-        for i, (pull, (tau, kz, _), slope) in enumerate(zip(tension, rates, piece.bending(s))):
-            shear, moment = moment_at_rest(section, rest.bent, rest.torque, (tau, kz, slope))
-            if rest.axial:
-                loaded = rest.load(tau, kz)
-                shear, moment = shear + loaded[0], moment + loaded[1]
-            initial[i], stress[i] = initial_of(np.array([pull, 0.0, 0.0]) + shear, moment)
+        force, moment = moment_at_rest(section, rest.bent, rest.torque, rates, piece.bending(s))
+        if rest.axial:
+            loaded = rest.load(*rates[:, :2].T)
+            force, moment = force + loaded[0], moment + loaded[1]
+        force[:, 0] += tension
+        initial, stress = initial_of(force, moment)
     soft = section.flexibility(start + s)
     return {"bend": bend, "soft": soft, "string": string, "initial": initial, "stress": stress}

@@ -175,12 +175,21 @@ class SpaceRope:
         """Return Phi, S and q of components at lines, (n, pieces, samples, 3, width, width)."""
         section, tension, _, inertia, drag = (of_lines(one)[..., None] for one in factors[:5])
         own = self.blocks
-        initial = tension * own.initial[which]
-        S = own.soft[which] / section + own.string[which] / tension
-        SH = S @ initial
-        q = tension * own.stress[which] - initial.swapaxes(3, 4) @ SH
-        q = q + inertia * own.inertia[which][:, :, None] + drag * own.drag[which][:, :, None]
-        return np.stack(np.broadcast_arrays(own.bend[which] + SH, S + 0j, q), axis=3)
+        found = np.empty((len(section), *own.bend.shape[1:3], 3, *own.bend.shape[3:]), complex)
+        phi, S, q = (found[:, :, :, k] for k in range(3))
+        S[:] = own.soft[which] / section
+        if own.string.any():
+            S += own.string[which] / tension
+        phi[:] = own.bend[which]
+        q[:] = tension * own.stress[which] + inertia * own.inertia[which][:, :, None]
+        if own.drag.any():
+            q += drag * own.drag[which][:, :, None]
+        if own.initial.any():
+            initial = tension * own.initial[which]
+            SH = S @ initial
+            phi += SH
+            q -= initial.swapaxes(3, 4) @ SH
+        return found
 
     def nodes(self, which: Index, factors: Factors) -> Complex:
         """Return the stiffness of what stands at the nodes, shape (n, pieces + 1, width, width)."""
@@ -189,6 +198,11 @@ class SpaceRope:
         return (
             springs * own.springs[which] + inertia * own.masses[which] + drag * own.dashpots[which]
         )
+
+    @computed
+    def kinks(self) -> list[int]:
+        """Pieces that begin with one."""
+        return [int(p) for p in np.flatnonzero((self.turn != np.eye(6)).any((1, 2)))]
 
     @computed
     def softest(self) -> tuple[float, float]:
@@ -203,6 +217,14 @@ class SpaceRope:
         length, mass = self.length.sum(), self.inertia[:, 1, 1].max()
         return float(1 / (mass * (bends * length**4 if bends > 0 else gives * length**2)))
 
+    def at_wave(self, wavenumber: float) -> float:
+        """Return the eigenvalue of a wave of a long straight rope [rad^2/s^2]."""
+        bends, gives = self.softest
+        mass, square = self.inertia[:, 1, 1].max(), wavenumber**2
+        if bends == 0:
+            return float(square / (gives * mass))
+        return float(square * (square / bends + max(self.pull, 0.0)) / mass)
+
     def waves(self, eigenvalue: float) -> float:
         """Return the largest wavenumber of a long straight rope [rad/m]."""
         bends, gives = self.softest
@@ -214,40 +236,39 @@ class SpaceRope:
         return float(np.sqrt(load * bends / large)) if large > 0 else 0.0
 
     @computed
-    def stiffest(self) -> float:
-        """Flexibility of bending, the least [1/N m^2]."""
-        return float(np.diagonal(self.soft.real, axis1=2, axis2=3)[..., 4:].min())
-
-    @computed
     def pull(self) -> float:
         """The largest tension [N]."""
         return float(self.stress[..., 4, 4].real.max())
 
     @computed
-    def least(self) -> float:
-        """The square of what mean curvature and length tell of wavenumbers [rad^2/m^2]."""
+    def of_waves(self) -> tuple[float, float, float, float, float]:
+        """Mass, flexibility of bending (the least), T/2 of it and flexibility of a string.
+
+        Last the square of what mean curvature and length tell of wavenumbers [rad^2/m^2].
+        """
+        soft = float(np.diagonal(self.soft.real, axis1=2, axis2=3)[..., 4:].min())
         bent = np.abs(self.bend[..., :3, :3]).max(axis=(1, 2, 3))
-        return float(((bent @ self.length) ** 2 + 1) / self.length.sum() ** 2)
+        least = float(((bent @ self.length) ** 2 + 1) / self.length.sum() ** 2)
+        mass, gives = float(self.inertia[:, 1, 1].max()), self.softest[1]
+        return mass, soft if self.softest[0] > 0 else 0.0, soft * self.pull / 2, gives, least
 
     def scale(self, which: Index, eigenvalue: ArrayLike) -> Real:
         """Return z (n, width), u = z u^ and f = f^/z, so that what a wave does is of size 1."""
         # z^2 is the receptance of a long straight beam of wavenumbers k and a, 1/(B k (k^2 + a^2))
         # across it and 1/(B a) of rotation, of a string 1/(T k); none of these wavenumbers is less
         # than curvature and length tell
-        least = self.least
-        load = np.abs(np.asarray(eigenvalue)) * self.inertia[:, 1, 1].max()
-        if self.softest[0] > 0:
-            soft = self.stiffest
-            half = soft * self.pull / 2
+        mass, soft, half, gives, least = self.of_waves
+        load = np.abs(eigenvalue) * mass
+        z = np.empty((len(load), 2))
+        if soft > 0:
             large = np.hypot(half, np.sqrt(load * soft)) + abs(half)
-            small = np.divide(load * soft, large, where=large > 0, out=np.zeros_like(large))
-            k2, a2 = np.stack((small, large) if half >= 0 else (large, small)) + least
-            across, turned = soft / np.sqrt(k2) / (k2 + a2), soft / np.sqrt(a2)
+            small = load * soft / np.maximum(large, TINY)
+            k2, a2 = (small + least, large + least)[:: 1 if half >= 0 else -1]
+            z[:, 0], z[:, 1] = soft / (np.sqrt(k2) * (k2 + a2)), soft / np.sqrt(a2)
         else:
-            across = self.softest[1] / np.sqrt(load * self.softest[1] + least)
-            turned = np.ones_like(across)
-        z = np.sqrt(np.stack([across, turned], axis=-1))
-        return np.take_along_axis(z, self.own[which] // 3, axis=-1)
+            z[:, 0], z[:, 1] = gives / np.sqrt(load * gives + least), 1.0
+        z = np.sqrt(z)
+        return z[np.arange(len(z))[:, None], self.own[which] // 3]
 
     @computed
     def at_rest(self) -> Real:
@@ -270,12 +291,14 @@ class SpaceRope:
     def core(self, which: Index, eigenvalues: Real) -> tuple[tuple[Any, ...], Real]:
         """Return what the core counts components by at eigenvalues, and the scale of each."""
         z, samples = self.scale(which, eigenvalues), self.bend.shape[1]
-        rates = self.at_rest[which]
-        inertia = self.blocks.inertia[which]
-        rates[:, :, :, 2] -= eigenvalues[:, None, None, None, None] * inertia[:, :, None]
-        radians = size_of(scaled_rates(rates, z)).max(axis=(0, 2)) * self.length
-        halved = halvings(np.maximum(radians, self.least_radians))
-        series = [series_of(*one, samples) for one in zip(self.length, halved)]
+        halved = np.zeros(len(self.length), dtype=np.int32)
+        if self.changes:
+            rates = self.at_rest[which]
+            inertia = self.blocks.inertia[which]
+            rates[:, :, :, 2] -= eigenvalues[:, None, None, None, None] * inertia[:, :, None]
+            radians = size_of(scaled_rates(rates, z)).max(axis=(0, 2)) * self.length
+            halved = halvings(np.maximum(radians, self.least_radians))
+        series = [series_of(length, int(n), samples) for length, n in zip(self.length, halved)]
         nodes = np.array([len(one) for one in series], dtype=np.int32)
         fields, *beside = self.alike
         return (self.length, halved, nodes, fields, np.concatenate(series), *beside), z
@@ -335,9 +358,10 @@ def size_of(rates: Matrices) -> Real:
 
 def halvings(radians: Real) -> NDArray[np.int32]:
     """Return how often pieces are halved for their series."""
-    return np.maximum(np.ceil(np.log2(np.maximum(radians, 1e-300) / RADIANS)), 0).astype(np.int32)
+    return np.maximum(np.ceil(np.log2(np.maximum(radians, TINY) / RADIANS)), 0).astype(np.int32)
 
 
 SPRINGS = 7  # Where they stand among what the core counts by.
 PARTS = 8  # Of a block that changes: terms of their series fall by 8 each.
+TINY = 1e-300
 RADIANS = 0.5  # Of the first piece that is summed as a series.

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
+from collections.abc import Iterable
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -24,6 +26,7 @@ RIGID = 1e-14  # Less, in units of bending over the whole length, is none.
 NARROW = 1e-13  # Brackets that nothing is found in are an answer themselves.
 BESIDE = 3e-8  # Iteration is at so much from a mode, where solving still tells others from it.
 SETTLED = 2.0  # Shifts of so many times that are the last.
+LADDER = 8.0  # Between the first values that are counted at.
 AT_ONCE = 32  # Groups that are sought together.
 MORE = 3  # Vectors beside those of the modes that are sought.
 
@@ -144,17 +147,15 @@ def count_below(rope: SpaceRope, eigenvalue: float) -> int:
 def lowest(rope: SpaceRope, wanted: int | None, below: float) -> Lowest:
     """Return the lowest eigenvalues, so many or all below one: of each component its own share."""
     counter, unit = Counter(rope), rope.unit
-    wanted, high = _surround(counter, unit, wanted, below)
-    share = _shares(counter, unit, wanted, high)
-    modes = [(k, i) for k in counter.components for i in range(share[k])]
+    wanted = _surround(counter, unit, wanted, below)
+    modes = _isolate(counter, wanted, unit)
     found: dict[tuple[int, int], tuple[float, float]] = {}
-    _isolate(counter, modes, unit)
     while left := [one for one in modes if one not in found]:
         groups = sorted({counter.bracket(*one) for one in left})
         wide = []
         for group, settled in zip(groups, refined(rope, groups, unit)):
             if settled is None and not group.is_narrow(unit):
-                wide.append((group.component, group.first))
+                wide.append(group)
                 continue
             whole = settled or [
                 np.full(group.size, one) for one in (group.middle, group.high - group.low)
@@ -163,7 +164,7 @@ def lowest(rope: SpaceRope, wanted: int | None, below: float) -> Lowest:
                 found[group.component, group.first + i] = value, error
         _divide(counter, wide, unit)
         if rope.carried:
-            _narrow(counter, wide, unit)
+            _narrow(counter, [(one.component, one.first) for one in wide], unit)
     ordered = sorted(modes, key=found.__getitem__)[:wanted]
     value, error = np.array([found[one] for one in ordered]).reshape(-1, 2).T
     which = np.array([k for k, _ in ordered], dtype=np.intp)
@@ -172,48 +173,61 @@ def lowest(rope: SpaceRope, wanted: int | None, below: float) -> Lowest:
 
 def _narrow(counter: Counter, modes: list[tuple[int, int]], unit: float) -> None:
     """Divide brackets until each is an answer: beside a pole of a foot no iteration is one."""
-    while wide := [one for one in modes if not counter.bracket(*one).is_narrow(unit)]:
+    while wide := {
+        one for one in (counter.bracket(*mode) for mode in modes) if not one.is_narrow(unit)
+    }:
         _divide(counter, wide, unit)
 
 
-def _surround(counter: Counter, unit: float, wanted: int | None, below: float) -> tuple[int, float]:
-    """Count below all and above those that are wanted: how many there are, and below what."""
-    low = -unit * 1e-3
+def _surround(counter: Counter, unit: float, wanted: int | None, below: float) -> int:
+    """Count below all and above those that are wanted; return how many these are."""
+    low, ladder = -unit * 1e-3, [below]
+    if not math.isfinite(below):
+        assert wanted is not None
+        # about where a straight rope has so many in two planes
+        rope = counter.rope
+        guess = rope.at_wave(math.pi * (wanted + 1) / (2 * rope.length.sum()))
+        ladder = [guess * LADDER**k for k in range(-3, 3)]
+    counter.total([low, *ladder])
     while counter.total([low])[0] > 0:
         low *= 64
         if not math.isfinite(low):
             raise SolveError("the stiffness has no lower bound: what is loaded has no mass")
-    if math.isfinite(below):
-        there = counter.total([below])[0]
-        return (there if wanted is None else min(wanted, there)), below
-    assert wanted is not None
-    high = unit * max(1.0, (wanted / 4) ** 2)
-    while counter.total([high, 4 * high])[1] < wanted:
-        high *= 16
+    high = ladder[-1]
+    if wanted is None or math.isfinite(below):
+        there = counter.total([high])[0]
+        return there if wanted is None else min(wanted, there)
+    while counter.total([high])[0] < wanted:
+        high *= LADDER**2
+        counter.total([high / LADDER, high])
         if high > 1e150 * unit:
             raise SolveError(f"fewer than {wanted} modes are finite")
-    return wanted, 4 * high
+    return wanted
 
 
-def _shares(counter: Counter, unit: float, wanted: int, high: float) -> list[int]:
-    """Return how many of the lowest modes each component has; more where some are nearly equal."""
-    if len(counter.components) == 1:
-        return [wanted]
-    low = counter.values[0][0]
-    while counter.total([high])[0] > wanted and not _are_close(low, high, TOGETHER, unit):
-        places = [low, *_between(low, high, unit), high]
-        above = next(i for i, total in enumerate(counter.total(places)) if total >= wanted)
-        low, high = places[max(above - 1, 0)], places[max(above, 1)]
-    return counter.each([high])[0]
+def _edge(counter: Counter, wanted: int) -> tuple[float, float]:
+    """Return the closest values at which all are counted, fewer and not fewer than are wanted."""
+    known = sorted(set(counter.values[0]).intersection(*counter.values[1:]))
+    totals = counter.total(known)
+    above = next(i for i, total in enumerate(totals) if total >= wanted)
+    return known[max(above - 1, 0)], known[above]
 
 
-def _isolate(counter: Counter, modes: list[tuple[int, int]], unit: float) -> None:
-    """Divide brackets until each has a single mode or modes that are found together."""
+def _isolate(counter: Counter, wanted: int, unit: float) -> list[tuple[int, int]]:
+    """Divide brackets until each has a single mode or modes that are found together; return these.
+
+    They are those that are wanted, and more where some are nearly equal.
+    """
     for _ in range(ROUNDS):
-        wide = [one for one in modes if not _is_done(counter.bracket(*one), unit)]
-        if not wide:
-            return
-        _divide(counter, wide, unit)
+        low, high = _edge(counter, wanted)
+        (share,) = counter.each([high])
+        modes = [(k, i) for k in counter.components for i in range(share[k])]
+        brackets = {counter.bracket(*one) for one in modes}
+        wide = {one for one in brackets if not _is_done(one, unit)}
+        more = len(modes) > wanted and not _are_close(low, high, TOGETHER, unit)
+        if not wide and not more:
+            return modes
+        _divide(counter, wide, unit, _between(low, high, unit) if more else [])
     raise SolveError("modes lie closer together than counts tell apart")
 
 
@@ -226,10 +240,12 @@ def _are_close(low: float, high: float, near: float, unit: float) -> bool:
     return high - low <= max(near * max(abs(low), abs(high)), 1e-6 * unit)
 
 
-def _divide(counter: Counter, modes: list[tuple[int, int]], unit: float) -> None:
-    """Count at three places in the bracket of each, which costs as much as at one."""
-    asked = set()
-    for component, low, high, _, _ in {counter.bracket(*one) for one in modes}:
+def _divide(
+    counter: Counter, brackets: Iterable[Bracket], unit: float, more: Iterable[float] = ()
+) -> None:
+    """Count at three places in the bracket of each, which costs as much as at one; all at more."""
+    asked = {(k, value) for k in counter.components for value in more}
+    for component, low, high, _, _ in brackets:
         asked |= {(component, value) for value in _between(low, high, unit)}
     counter.ask(asked)
 
@@ -256,7 +272,7 @@ class Pursuit:
 
     def __init__(self, bracket: Bracket, bends: bool = False) -> None:
         self.bracket, self.at = bracket, bracket.middle
-        self.value = np.full(bracket.size, math.inf)
+        self.value = [math.inf] * bracket.size
         self.shift = math.inf
         self.settled = False
         self.bends = bends  # whether poles of feet bend what is linear about a shift elsewhere
@@ -265,19 +281,21 @@ class Pursuit:
 
     def take(self, nearby: Nearby, unit: float) -> bool:
         """Go on from what was found at `at`; True where nothing is to come."""
-        value = self.at + nearby.shift
-        change, shift = (float(np.abs(one).max()) for one in (value - self.value, nearby.shift))
+        shifts = nearby.shift.tolist()
+        value, shift = [self.at + one for one in shifts], max(map(abs, shifts))
+        change = max(abs(now - before) for now, before in zip(value, self.value))
         # the last value was off by the square of its shift, so this one is by that of its own
         off = change * min(shift / self.shift, 1.0) ** 2 if math.isfinite(self.shift) else math.inf
         self.value, self.shift, self.vectors = value, shift, nearby.around
-        mean = float(value.mean())
-        near = max(8 * float(np.ptp(value)), BESIDE * max(abs(mean), unit))
-        least = float(nearby.error.min()) / 4
-        self.settled = min(change, off) <= least or (math.isfinite(off) and shift <= SETTLED * near)
+        mean, error = sum(value) / len(value), float(nearby.error.min())
+        near = max(8 * (value[-1] - value[0]), BESIDE * max(abs(mean), unit))
+        self.settled = min(change, off) <= error / 4 or (
+            math.isfinite(off) and shift <= SETTLED * near
+        )
         self.error = nearby.error + SAFE * off
         if self.bends:
             # the error of the second order is a third of what another shift changes
-            self.settled = change <= 2 * float(nearby.error.min())
+            self.settled = change <= 2 * error
             self.error = nearby.error + change
             near *= 2 if abs(self.at - mean) < 1.5 * near else 1
         self.at = mean + near
@@ -286,8 +304,9 @@ class Pursuit:
     @property
     def found(self) -> tuple[Real, Real] | None:
         """Eigenvalues and rounding errors, None where they did not settle in the bracket."""
-        if self.settled and self.bracket.has(self.value, self.error):
-            return self.value, self.error
+        value = np.array(self.value)
+        if self.settled and self.bracket.has(value, self.error):
+            return value, self.error
         return None
 
 
@@ -314,12 +333,16 @@ def refined(rope: SpaceRope, groups: list[Bracket], unit: float) -> list[tuple[R
 def start(system: Assembly, columns: int, known: Any = ()) -> Real:
     """Return vectors (n, rows, columns): those found before, or some that no mode is free of."""
     rows = system.size
-    fresh = np.random.default_rng(0).standard_normal((rows, columns))
-    x = np.tile(fresh, (len(system.D), 1, 1))
+    x = np.tile(_fresh(rows, columns), (len(system.D), 1, 1))
     for k, one in enumerate(known):
         if one.vectors is not None and len(one.vectors) == rows:
             x[k, :, : one.vectors.shape[1]] = one.vectors[:, :columns]
     return x
+
+
+@lru_cache(16)
+def _fresh(rows: int, columns: int) -> Real:
+    return np.random.default_rng(0).standard_normal((rows, columns))
 
 
 class Nearby(NamedTuple):
@@ -338,61 +361,45 @@ def ritz(system: Assembly, x: Real, sizes: list[int], times: int = 3) -> list[Ne
     that the shifts of vectors between which nothing else lies are right to second order.
     """
     factored, most = system.factored(), max(sizes)
-    for _ in range(times):
-        x = factored.solve(mass(system, np.linalg.qr(x)[0]))
-    x = np.linalg.qr(x)[0]
-    own, around = np.zeros((*x.shape[:2], most)), []
-    for k, (shift, mix) in enumerate(_small(*_forms(system, x))):
-        # the nearest first: the next iteration may start with fewer
-        around.append(x[k] @ mix[:, np.abs(shift).argsort()])
-        near = around[k][:, :most]
-        own[k, :, : near.shape[1]] = near
+    x, A, M = factored.iterated(x, times)
+    shift, mix = _small(A, M / -STEP)
+    # the nearest first: the next iteration may start with fewer
+    around = x @ np.take_along_axis(mix, np.abs(shift).argsort(1)[:, None], 2)
     # those that are sought alone: the others' shifts are so much larger that they round theirs
-    own = np.linalg.qr(factored.solve(mass(system, np.linalg.qr(own)[0])))[0]
-    found = []
-    A, M = _forms(system, own)
-    alike = _small(A, M) if min(sizes) == most else None
-    for k, size in enumerate(sizes):
-        few = slice(k, k + 1), slice(size), slice(size)
-        shift, mix = alike[k] if alike else _small(A[few], M[few])[0]
-        own[k, :, : mix.shape[1]] = own[k, :, :size] @ mix
-        found.append((shift, mix.shape[1]))
+    own, A, M = factored.iterated(around[:, :, :most], 1)
+    of = np.array(sizes)
+    shift, mix = np.full((len(x), most), math.inf), np.zeros(A.shape)
+    for size in set(sizes):
+        these = of == size
+        few = these, slice(size), slice(size)
+        shift[these, :size], mix[few] = _small(A[few], M[few] / -STEP)
+    own = own @ mix
     error = _rounding(system, own)
     return [
-        Nearby(shift, error[k, :size], own[k, :, :size], around[k])
-        for k, (shift, size) in enumerate(found)
+        Nearby(shift[k, :size], error[k, :size], own[k, :, :size], around[k])
+        for k, size in enumerate(sizes)
     ]
 
 
-def _forms(system: Assembly, x: Real) -> tuple[Real, Real]:
-    back = x.swapaxes(1, 2)
-    return back @ stiff(system, x), back @ mass(system, x)
+def _small(A: Real, M: Real) -> tuple[Real, Real]:
+    """Return shifts (n, c) and vectors in columns of A x = shift M x.
 
-
-def _small(A: Real, M: Real) -> list[tuple[Real, Real]]:
-    """Return shifts and vectors of A x = shift M x; what moves next to nothing is no motion."""
+    What moves next to nothing is no motion: its shift is infinite, its vector 0.
+    """
+    if A.shape[1:] == (1, 1):
+        return (A / M)[:, 0], 1 / np.sqrt(M)
     weight, own = np.linalg.eigh(M)
     moving = weight > 1e-8 * weight[:, -1:]
     if moving.all():
         own = own / np.sqrt(weight)[:, None]
         shift, mix = np.linalg.eigh(own.swapaxes(1, 2) @ A @ own)
-        return list(zip(shift, own @ mix))
-    found = []
+        return shift, own @ mix
+    shift, vectors = np.full(weight.shape, math.inf), np.zeros(A.shape)
     for k, there in enumerate(moving):
-        some = own[k][:, there] / np.sqrt(weight[k][there])
-        shift, mix = np.linalg.eigh(some.T @ A[k] @ some)
-        found.append((shift, some @ mix))
-    return found
-
-
-def stiff(system: Assembly, x: Real) -> Real:
-    """Return A x."""
-    return system.together(*system.real.apply(*system.apart(x)))
-
-
-def mass(system: Assembly, x: Real) -> Real:
-    """Return -dA/dlambda x, by the imaginary parts."""
-    return system.together(*system.imag.apply(*system.apart(x))) / -STEP
+        some, count = own[k][:, there] / np.sqrt(weight[k][there]), there.sum()
+        shift[k, :count], mix = np.linalg.eigh(some.T @ A[k] @ some)
+        vectors[k, :, :count] = some @ mix
+    return shift, vectors
 
 
 def _rounding(system: Assembly, x: Real) -> Real:

@@ -273,6 +273,56 @@ static void test_bands_of_numbers_of_both_kinds(void)
     }
 }
 
+/* one part held at its left, u_1 = G p, with i m in N at its right: of Re(A)^-1 Im(A) the largest
+   eigenvalue is that of the largest G m, and A does to a solution what solving undid */
+static void test_iteration_finds_what_gives_way_most(void)
+{
+    enum { COLUMNS = 2 };
+    for (size_t w = 3; w <= SIX; w += 3) {
+        double _Complex D[FULL] = {0}, G[FULL] = {0}, none[FULL] = {0}, N[2 * FULL] = {0};
+        double _Complex given[3 * SIX], back[3 * SIX];
+        double factor[3 * SIX * (6 * SIX - 2)], x[COLUMNS * 3 * SIX], work[COLUMNS * 3 * SIX];
+        double form[2 * COLUMNS * COLUMNS];
+        uint8_t fixed[3 * SIX] = {0};
+        int32_t pivot[3 * SIX];
+        for (size_t i = 0; i < w; i++) {
+            fixed[i] = 1;
+            G[i * w + i] = (double)(2 + i);
+            N[w * w + i * w + i] = CMPLX(0, 0.01);
+            for (size_t j = 0; j < i; j++)
+                D[i * w + j] = 0.1;
+        }
+        for (size_t i = 0; i < 3 * w; i++) {
+            given[i] = i < w ? 0 : CMPLX((double)i, 1);
+            x[i] = 1;
+            x[3 * w + i] = (double)(i % w);
+        }
+        const struct rd_space_band band = {
+            w, 1, 1, 2, (double *)D, (double *)G, (double *)none, (double *)N, fixed};
+        struct rd_workspace workspace = {0};
+        rd_space_apply(&band, 1, given, back);
+        rd_space_respond(&band, 1, back, &workspace);
+        workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
+        CHECK_INT(rd_space_respond(&band, 1, back, &workspace), RD_OK);
+        for (size_t i = 0; i < 3 * w; i++)
+            CHECK_ABS(cabs(back[i] - given[i]), 0, 1e3 * EPS, "roundings of up to 18");
+        free(workspace.base);
+
+        CHECK_INT((long long)rd_space_factor(&band, factor, pivot), 1);
+        rd_space_iterate(&band, COLUMNS, factor, pivot, 200, x, form, work);
+        const double most = (double)(1 + w);
+        CHECK_ABS(form[0] / form[COLUMNS * COLUMNS], 1 / (0.01 * most), 1e-10,
+                  "(5/6)^200 and less");
+        double length = 0, across = 0;
+        for (size_t i = 0; i < 3 * w; i++) {
+            length += x[i] * x[i];
+            across += x[i] * x[3 * w + i];
+        }
+        CHECK_ABS(length, 1, 16 * EPS, "roundings");
+        CHECK_ABS(across, 0, 16 * EPS, "roundings");
+    }
+}
+
 int main(void)
 {
     test_triple_of_a_beam_at_rest();
@@ -280,5 +330,6 @@ int main(void)
     test_a_held_node_within_is_counted();
     test_parts_of_what_only_seems_to_change();
     test_bands_of_numbers_of_both_kinds();
+    test_iteration_finds_what_gives_way_most();
     return check_report("space");
 }

@@ -292,6 +292,8 @@ OTHERS = {
     "space_factor": lambda _: _core.space_factor(*BLOCKS, FIXED),
     "space_solve": lambda _: _core.space_solve(*FACTORED, SOLVED),
     "space_respond": lambda _: _core.space_respond(*BLOCKS, FIXED, SOLVED),
+    "space_apply": lambda _: _core.space_apply(*BLOCKS, FIXED, SOLVED),
+    "space_iterate": lambda _: _core.space_iterate(*BLOCKS, FIXED, *FACTORED, SOLVED, 2),
     "space_count": lambda _: _core.space_count(SPACE, PLANE, np.array([1e4, 1e6]), SCALE),
 }
 
@@ -669,6 +671,26 @@ REFUSED = {
         lambda: _core.space_respond(*BLOCKS, FIXED, SOLVED[:, :, :5]),
         ValueError,
         "right must have 18 entries along axis 2, got 5",
+    ),
+    "vectors of fewer rows": (
+        lambda: _core.space_apply(*BLOCKS, FIXED, SOLVED[:, :, :5]),
+        ValueError,
+        "vectors must have 18 entries along axis 2, got 5",
+    ),
+    "iterated vectors of fewer rows": (
+        lambda: _core.space_iterate(*BLOCKS, FIXED, *FACTORED, SOLVED[:, :, :5], 2),
+        ValueError,
+        "vectors must have 18 entries along axis 2, got 5",
+    ),
+    "iterations of other factors": (
+        lambda: _core.space_iterate(*BLOCKS, FIXED, FACTORED[0][:, :5], FACTORED[1], SOLVED, 2),
+        ValueError,
+        "factors must have 18 entries along axis 1, got 5",
+    ),
+    "fewer than no iterations": (
+        lambda: _core.space_iterate(*BLOCKS, FIXED, *FACTORED, SOLVED, -1),
+        ValueError,
+        "times must be from 0 to 60, got -1",
     ),
     "a rope of nine arrays": (
         lambda: _core.space_count(SPACE[:9], PLANE[:1], np.ones(1), SCALE[:1]),
