@@ -53,6 +53,10 @@ RD_INLINE double larger_size(double a, double b)
 {
     return a > b ? a : b;
 }
+RD_INLINE double lesser_size(double a, double b)
+{
+    return a < b ? a : b;
+}
 RD_INLINE int is_zero(double a)
 {
     return a == 0;
@@ -206,7 +210,7 @@ static int part_add(struct counting *c, const struct triple *next, double below,
     double N[WIDE * WIDE];
     node_fill(c, node, N);
     c->below += below;
-    if (!apart && join(c->part + c->parts - 1, next, N, &joined) <= c->gentle) {
+    if (!apart && join(c->part + c->parts - 1, next, N, &joined).largest <= c->gentle) {
         c->below += joint(c, c->part + c->parts - 1, next, N);
         c->part[c->parts - 1] = joined;
         return 1;
@@ -236,7 +240,7 @@ static int doubled(struct counting *c, struct family *f, double *below)
     double more = 0;
     for (int i = 0; i < count; i++) {
         pair(f, i, &one, &two);
-        if (join(&one, &two, NULL, longer + i) > (f->poly ? STEADY : c->gentle))
+        if (join(&one, &two, NULL, longer + i).largest > (f->poly ? STEADY : c->gentle))
             return 0;
         const int here = joint(c, &one, &two, nothing);
         if (f->poly && here != 0)

@@ -1,6 +1,6 @@
 /* Triples of short pieces and their joints for WIDE coordinates and numbers of one type, NUM: included
    by one source file each, which has add, subtract, times, scaled, over, number(double), size(a), how large a number is,
-   is_zero, and for exchanges of rows EITHER with larger(a, b), any and exchange(a, b, either). */
+   is_zero, lesser_size, and for exchanges of rows EITHER with larger(a, b), any and exchange(a, b, either). */
 #include "space/space.h"
 
 #include <math.h>
@@ -171,13 +171,35 @@ RD_INLINE void add_congruent(const NUM A[WIDE][WIDE], const NUM B[WIDE][WIDE],
     add_symmetric(A, BF, C);
 }
 
+/* Of the inverse (I + G V)^-1 of a joint the largest entry, and the least of the norms by rows and by
+   columns of what it is away from I. That is 1 and more once something has resonated: an eigenvalue
+   of the inverse is negative there. */
+struct nearness {
+    SIZE largest, away;
+};
+
+RD_INLINE SIZE norm_of(const NUM A[WIDE][WIDE])
+{
+    SIZE most[2] = {size(number(0)), size(number(0))};
+    for (int i = 0; i < WIDE; i++) {
+        SIZE row = size(number(0)), column = row;
+        for (int j = 0; j < WIDE; j++) {
+            row += size(A[i][j]);
+            column += size(A[j][i]);
+        }
+        most[0] = larger_size(most[0], row);
+        most[1] = larger_size(most[1], column);
+    }
+    return lesser_size(most[0], most[1]);
+}
+
 /* Two pieces, a node's stiffness N (or NULL) between them, V = Q2 + N, X = (I + G1 V)^-1 G1:
 
        D = D1 + D2 + D2 D1 - F2 X V F1,  G = G2 + F2 X F2^T,  Q = Q1 + F1^T (V - V X V) F1
 
-   Returns the largest entry of (I + G1 V)^-1. */
-RD_INLINE SIZE join(const struct triple *one, const struct triple *two, const NUM *N,
-                    struct triple *joined)
+   Returns how near a resonance the joint is. */
+RD_INLINE struct nearness join(const struct triple *one, const struct triple *two, const NUM *N,
+                               struct triple *joined)
 {
     enum { ALL = 2 * WIDE };
     NUM V[WIDE][WIDE], A[WIDE][WIDE], X[WIDE][WIDE], both[WIDE][ALL];
@@ -202,6 +224,7 @@ RD_INLINE SIZE join(const struct triple *one, const struct triple *two, const NU
     NUM XV[WIDE][WIDE], S[WIDE][WIDE], Dt[WIDE][WIDE], T[WIDE][WIDE];
     struct triple found;
     multiply(X, V, XV);
+    const struct nearness near = {largest, norm_of(XV)};
     multiply(V, XV, S);
     for (int i = 0; i < WIDE; i++)
         for (int j = 0; j < WIDE; j++)
@@ -217,7 +240,7 @@ RD_INLINE SIZE join(const struct triple *one, const struct triple *two, const NU
     add_congruent(two->G, X, Dt, found.G);
     add_congruent(one->Q, S, one->D, found.Q);
     *joined = found;
-    return largest;
+    return near;
 }
 
 /* The entries of a part of the length whose left end has the series (fields, RD_SPACE_ORDERS); (fields,

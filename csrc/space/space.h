@@ -77,7 +77,7 @@ struct rd_space {
 };
 
 /* The parts of a piece at `lines` (lines, fields, 3, width, width) = Phi, S, q of each field, doubled
-   `doublings` times or, earlier, while no joint's inverse has an entry above `gentle`: *reached says
+   `doublings` times or, earlier, while no joint's (I + G Q)^-1 is farther from I than `gentle`: *reached says
    how often. triple (lines, parts, 3, width, width), parts = 2^(halvings - doublings) or 1 where they are
    alike: D = F - I, G, Q; of use only where *whole says that each was doubled *reached times, which are
    `doublings` where they are not alike. Takes what it needs from the

@@ -43,6 +43,10 @@ RD_INLINE lanes larger_size(lanes a, lanes b)
 {
     return l_select(a > b, a, b);
 }
+RD_INLINE lanes lesser_size(lanes a, lanes b)
+{
+    return l_select(a > b, b, a);
+}
 RD_INLINE int any(lane_mask m)
 {
     long long either = 0;
@@ -77,14 +81,14 @@ static RD_CLONES void family_fill(const struct rd_space_run *run, const cv *E, s
     }
 }
 
-/* one doubling of all parts, unless an inverse of their joints has a larger entry than is gentle */
+/* one doubling of all parts, unless one of their joints is farther from none than is gentle */
 static RD_CLONES int doubled(struct family *f, double gentle, struct triple *longer)
 {
     const int count = next_count(f);
     for (int i = 0; i < count; i++) {
         struct triple one, two;
         pair(f, i, &one, &two);
-        if (any((lane_mask) ~(join(&one, &two, NULL, longer + i) <= gentle)))
+        if (any((lane_mask) ~(join(&one, &two, NULL, longer + i).away <= gentle)))
             return 0;
     }
     advance(f, count, longer);

@@ -26,7 +26,7 @@ Band = tuple[Complex, Complex, Complex, Complex, NDArray[np.uint8]]
 """D, G, Q, N and which rows stand for nothing, shape (n, size)."""
 
 ONE = np.zeros(1, dtype=np.intp)  # All six coordinates, of what is wound.
-GENTLE = 1.5  # The largest entry of a joint's inverse within a part.
+GENTLE = 0.9  # A joint's inverse is so far from 1; by 1 and more where a part has resonated.
 MOST_PARTS = 100_000
 
 

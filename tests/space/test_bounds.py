@@ -1,6 +1,7 @@
 """What rounding does to answers of ropes on an axis, against numbers of eleven digits more."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -8,8 +9,9 @@ from support import random_axes, wide_space
 
 import ropedyn as rd
 from ropedyn.chain.port import Point
+from ropedyn.space.assembly import assemble
 from ropedyn.space.response import Request
-from ropedyn.space.rope import ALL
+from ropedyn.space.rope import ALL, unforced
 from ropedyn.space.spectrum import Counter, lowest
 
 pytestmark = pytest.mark.skipif(wide_space.DIGITS < 63, reason="wide numbers are no wider here")
@@ -37,9 +39,9 @@ def response_ratios(rng, lines=24):
     return (error / np.where(frf.rounding_limit > 0, frf.rounding_limit, 1.0))[exact != 0]
 
 
-def mode_ratios(rng, number=8):
+def mode_ratios(rng, number=8, scene=random_axes.scene):
     """Errors over their bounds: eigenvalues that lie apart from others."""
-    model = random_axes.scene(rng).compile()
+    model = scene(rng).compile()
     rope, found = model.rope, lowest(model.rope, number, math.inf)
     ratios = []
     for k in range(len(rope.own)):
@@ -73,6 +75,22 @@ def test_bounds_of_modes_cover_what_rounding_does():
     found = some(mode_ratios, 60, 1)
     assert found.max() < 1
     assert np.median(found) > 2e-3  # 2 %
+
+
+def test_bounds_of_ropes_under_torque_cover_what_rounding_does():
+    found = some(partial(mode_ratios, scene=random_axes.twisted), 60, 3)
+    assert found.max() < 1
+
+
+def test_no_part_is_longer_than_a_quarter_wave():
+    # beyond its own resonance entries of a part lose the digits that the bounds say they have
+    rope = rd.Rope(rd.Axis.arc(1e9, 2e-9), 0.5, axial_stiffness=1e9)
+    own = rd.Scene(rope, planes="both", tension=100.0).compile().rope
+    which, radians = np.array([1]), np.geomspace(1.0, 300.0, 200)  # across: a string of 2 m
+    for value in (radians / 2) ** 2 * 100.0 / 0.5:
+        lines = unforced([value])
+        parts = assemble(own, which, lines, own.scale(which, [value])).parts
+        assert math.sqrt(value * 0.5 / 100.0) * 2 / parts < math.pi / 2
 
 
 @pytest.mark.slow

@@ -47,3 +47,14 @@ def scene(rng, *, damped=False):
         load["damping"] = rd.RayleighDamping(1.0, 1e-6)
     ends = tuple(rng.choice(["clamped", "pinned", "free"], 2).tolist())
     return rd.Scene(rope, planes="both", ends=ends, **load)
+
+
+def twisted(rng):
+    """A straight rope under tension and a torque up to that which two pinned ends bear."""
+    length, both = 10 ** rng.uniform(-1, 1), 10 ** rng.uniform(-1, 2) * 10 ** rng.uniform(0, 1, 2)
+    tension = both.min() / length**2 * 10 ** rng.uniform(-1, 4)
+    most = np.sqrt(4 * both.min() * tension + (2 * np.pi * both.min() / length) ** 2)
+    rope = rd.Rope(length, 10 ** rng.uniform(-1, 1), bending_stiffness=tuple(both.tolist()))
+    ends = tuple(rng.choice(["clamped", "pinned"], 2).tolist())
+    torque = most * rng.uniform(-1, 1)
+    return rd.Scene(rope, planes="both", ends=ends, tension=tension, torque=torque)

@@ -10,7 +10,7 @@ from ropedyn.space.rope import Factors, SpaceRope
 
 DIGITS = np.finfo(np.longdouble).nmant
 """Of a wide number; 52 where there are none, on machines of other kinds."""
-SHORT, LONG, TERMS = 0.5, 1.0, 28
+SHORT, LONG, TERMS = 0.5, 2.0, 28  # of sums of entries, twice what a wave turns by
 
 
 def rates_of(rope: SpaceRope, k: int, factors: Factors, z):
