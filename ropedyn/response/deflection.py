@@ -50,8 +50,7 @@ class Deflection(Answer):
         Bound of what rounding does to the displacement, to first order, computed when it is read
         [m, rad]. The closer a load is to a critical one the larger it is.
     force_rounding_error : ndarray, shape (nodes, coordinates)
-        The same of the forces, which are what the rope beside a node leaves of its forces [N, N m];
-        infinite of a rope on an axis in space, where no bound is known.
+        The same of the forces, which are what the rope beside a node leaves of its forces [N, N m].
     mesh_error : ndarray, shape (nodes, coordinates)
         How far a chain is from its continuous spans, solved when it is read, with what rounding
         does to these [m, rad]; 0 of these, infinite where they have no answer.

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..base import check
 from ..base.answer import Cost
-from ..base.array import Index, Real
+from ..base.array import Flags, Index, Real
 from ..base.computed import Late
 from ..base.errors import SolveError
 from ..chain.port import Point
@@ -16,7 +17,7 @@ from ..eigen.vectors import within
 from ..response.critical import exceeds
 from ..response.deflection import POINTS, Deflection, summed_loads
 from ..scene.scene import Scene
-from .assembly import Assembly, LoadedFields, assemble, bound
+from .assembly import ROUNDINGS, Assembly, LoadedFields, assemble, bound
 from .compile import finer_rope
 from .modes import check_points
 from .rope import SIX, SpaceRope, unforced
@@ -54,13 +55,13 @@ def solve_static(
             there[:, one.own] = one.displacement[node]
         return np.abs(displacement - there)[:, own]
 
-    def rounding() -> Real:
-        limit = np.zeros_like(displacement)
+    @cache
+    def rounding() -> tuple[Real, Real]:
+        limits = np.zeros((2, *displacement.shape))
         for one in solved:
-            limit[:, one.own] = one.rounding()
-        limit = limit[:, own]
-        limit.setflags(write=False)
-        return limit
+            limits[:, :, one.own] = one.rounding()
+        limits.setflags(write=False)
+        return limits[0][:, own], limits[1][:, own]
 
     return Deflection(
         coordinates=rope.coordinates,
@@ -70,8 +71,8 @@ def solve_static(
         load=tuple(loads.items()),
         critical_loads=critical,
         cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=1, factorisations=len(solved)),
-        rounding_error=Late(rounding),
-        force_rounding_error=_same(shape, np.inf),
+        rounding_error=Late(lambda: rounding()[0]),
+        force_rounding_error=Late(lambda: rounding()[1]),
         mesh_error=Late(mesh),
     )
 
@@ -89,24 +90,53 @@ class LoadedPart(NamedTuple):
         return np.asarray(self.field.u[0, self.system.node, :, 0] * self.system.z[0])
 
     @property
+    def held(self) -> Flags:
+        """Coordinates of the nodes that cannot move, shape (nodes, width)."""
+        return np.asarray(self.system.held[0, self.system.node])
+
+    @property
     def force(self) -> Real:
-        """What the surroundings put on the nodes: f_b on the left less f_a on the right."""
-        D, Q, u, f = (one[0].real for one in (self.system.D, self.system.Q, *self.field[:2]))
-        force = np.zeros(u.shape)
-        force[1:] += f
-        force[:-1] += Q @ u[:-1] - f - D.swapaxes(1, 2) @ f
+        """What the surroundings put on the nodes: p - N u, or where they are held what is left."""
+        D, Q, N, u, f, p = (
+            one[0].real for one in (self.system.D, self.system.Q, self.system.N, *self.field)
+        )
+        held = np.zeros(u.shape)
+        held[1:] += f
+        held[:-1] += Q @ u[:-1] - f - D.swapaxes(1, 2) @ f
+        force = np.where(self.system.held[0, :, :, None], held, p - N @ u)
         return np.asarray(force[self.system.node, :, 0] / self.system.z[0])
 
-    def rounding(self) -> Real:
-        """Bound what rounding does to the displacement, shape (nodes, width)."""
+    def rounding(self) -> tuple[Real, Real]:
+        """Bound what rounding does to displacement and force, shape (nodes, width) each."""
         system, nodes, w = self.system, len(self.system.node), self.system.width
         unit = np.zeros((system.parts + 1, w, w * nodes))
         along = np.tile(np.arange(w), nodes)
         unit[np.repeat(system.node, w), along, np.arange(w * nodes)] = 1.0
-        limit = bound(system, self.field, _solved(system, unit))[0, 0]
-        limit = limit.reshape(nodes, w) * system.z[0]
-        limit[system.held[0, system.node]] = 0.0
-        return limit
+        moved = bound(system, self.field, _solved(system, unit))[0, 0].reshape(nodes, w)
+        moved[self.held] = 0.0
+        size = np.abs(system.N[0, system.node])
+        pressed = (size @ moved[:, :, None])[:, :, 0]
+        # p - N u itself, whose terms have a rounding each
+        terms = np.abs(self.field.load[0]) + np.abs(system.N[0]) @ np.abs(self.field.u[0])
+        pressed += ROUNDINGS * np.finfo(float).eps * terms[system.node, :, 0]
+        there = np.nonzero(self.held & ~system.absent[0])
+        pressed[self.held] = 0.0
+        if len(there[0]):
+            pressed[there] = bound(system, self.field, self._moving(*there))[0, 0]
+            # the force of what is on the left of a node, which has no entry of a part beside it
+            left = np.linalg.norm(self.field.f[0, :, :, 0], axis=1)
+            left = np.concatenate([[0.0], left])[system.node[there[0]]]
+            pressed[there] += ROUNDINGS * np.finfo(float).eps * left
+        return moved * system.z[0], pressed / system.z[0]
+
+    def _moving(self, node: Index, along: Index) -> LoadedFields:
+        """Return the fields of held coordinates that move by 1 each, which tell their forces."""
+        system = self.system
+        e = np.zeros((1, system.parts + 1, system.width, len(node)))
+        e[0, system.node[node], along, np.arange(len(node))] = 1.0
+        x = system.together(e, np.zeros((1, system.parts, *e.shape[2:])))
+        x = x + system.factored().solve(-system.apply(x).real)
+        return LoadedFields(*system.apart(x), 0 * e)
 
 
 def _under(rope: SpaceRope, loads: dict[Point, float]) -> list[LoadedPart]:

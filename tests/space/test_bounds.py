@@ -8,7 +8,9 @@ import pytest
 from support import random_axes, wide_space
 
 import ropedyn as rd
+from ropedyn.base import check
 from ropedyn.chain.port import Point
+from ropedyn.eigen.vectors import within
 from ropedyn.space.assembly import assemble
 from ropedyn.space.response import Request
 from ropedyn.space.rope import ALL, unforced
@@ -57,6 +59,34 @@ def mode_ratios(rng, number=8, scene=random_axes.scene):
     return np.concatenate(ratios) if ratios else np.zeros(0)
 
 
+def static_ratios(rng, points=2):
+    """Errors over their bounds: displacements, and forces of what is held and of what is not."""
+    scene = random_axes.scene(rng)
+    model, length = scene.compile(), scene.rope.length
+    loads = {
+        (str(rng.choice(model.coordinates)), rng.uniform(0, length)): rng.uniform(-1, 1)
+        for _ in range(3)
+    }
+    try:
+        found = model.static(loads, points=points)
+    except rd.SolveError:  # a rigid motion is free, or it buckles
+        return np.zeros(0)
+    x = np.concatenate([within(model.rope.x, points), [at for _, at in loads]])
+    cut, _ = model.rope.cut(x, check.NEAR * length)
+    ratios = []
+    for value, bound, exact in zip(
+        (found.displacement, found.force),
+        (found.rounding_error, found.force_rounding_error),
+        wide_space.deflection(cut, loads),
+    ):
+        error = np.abs(value - exact[:, ~cut.absent]).astype(float)
+        there = bound > 0
+        # roundings of the wide numbers, of which some are 0 but for them
+        assert (error[~there] <= 1e-17 * np.abs(value).max()).all()
+        ratios.append(error[there] / bound[there])
+    return np.concatenate(ratios)
+
+
 def some(ratios_of, number, seed):
     """So many ratios of scenes one after another."""
     rng, found = np.random.default_rng(seed), np.zeros(0)
@@ -75,6 +105,12 @@ def test_bounds_of_modes_cover_what_rounding_does():
     found = some(mode_ratios, 60, 1)
     assert found.max() < 1
     assert np.median(found) > 2e-3  # 2 %
+
+
+def test_bounds_of_deflections_cover_what_rounding_does():
+    found = some(static_ratios, 1000, 4)
+    assert found.max() < 1
+    assert np.median(found[found > 0]) > 1e-3
 
 
 def test_bounds_of_ropes_under_torque_cover_what_rounding_does():
@@ -102,6 +138,17 @@ def test_no_part_is_longer_than_a_quarter_wave():
 )
 def test_bounds_of_many_responses_cover_what_rounding_does(claim):
     claim(some(response_ratios, 10_000, 100).max())
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    "10^4 displacements and forces of deflections of random ropes on an axis: error over its bound",
+    reference=WIDE,
+    accepted=1.0,
+    wide=NONE_BEYOND,
+)
+def test_bounds_of_many_deflections_cover_what_rounding_does(claim):
+    claim(some(static_ratios, 10_000, 102).max())
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ enough for their series, joined while that costs nothing, and one band by Gauss 
 
 import numpy as np
 
-from ropedyn.space.rope import Factors, SpaceRope
+from ropedyn.space.rope import MATRICES, SIX, Factors, SpaceRope
 
 DIGITS = np.finfo(np.longdouble).nmant
 """Of a wide number; 52 where there are none, on machines of other kinds."""
@@ -15,7 +15,7 @@ SHORT, LONG, TERMS = 0.5, 2.0, 28  # of sums of entries, twice what a wave turns
 
 def rates_of(rope: SpaceRope, k: int, factors: Factors, z):
     """Phi, S and q of component k, scaled, shape (n, pieces, 3, w, w)."""
-    own = {name: array[k].astype(np.clongdouble) for name, array in rope.blocks._asdict().items()}
+    own = {name: getattr(rope.blocks, name)[k].astype(np.clongdouble) for name in MATRICES}
     section, tension, _, inertia, drag = (
         np.asarray(one, dtype=np.clongdouble)[:, None, None, None] for one in factors[:5]
     )
@@ -140,10 +140,11 @@ def solved(F, G, Q, N, held, absent, right, slip=None):
         A[lines[:, None], at[:, None], (k - at)[:, None] + beside + wide] = own
         A[:, k, beside + wide] = other
         x[lines, at], x[:, k] = x[:, k].copy(), x[lines, at]
-        for i in rows[1:]:
-            by = (A[:, i, k - i + beside] / other[:, 0])[:, None]
-            A[:, i, k - i + beside + wide] -= by * other
-            x[:, i] -= by * x[:, k]
+        below = rows[1:]
+        columns = (k - below)[:, None] + beside + wide
+        by = (A[:, below, k - below + beside] / other[:, :1])[:, :, None]
+        A[:, below[:, None], columns] -= by * other[:, None]
+        x[:, below] -= by * x[:, k][:, None]
     for k in range(size - 1, -1, -1):
         wide = np.arange(1, min(2 * beside, size - 1 - k) + 1)
         x[:, k] -= (A[:, k, beside + wide][:, :, None] * x[:, k + wide]).sum(axis=1)
@@ -175,6 +176,26 @@ def receptance(request):
         u, _ = solved(F, G, Q, N, held, request.rope.blocks.absent[k], right)
         value[one.pairs] = (u[:, responses, seen] * z[:, seen, None]).transpose(2, 1, 0)
     return value
+
+
+def deflection(rope: SpaceRope, loads):
+    """Displacement and force at the nodes (nodes, 6) under loads there, in wide numbers."""
+    displacement, force = np.zeros((2, len(rope.x), 6), dtype=np.longdouble)
+    for k, own in enumerate(rope.own):
+        factors = Factors(*np.ones((3, 1)), *np.zeros((3, 1)))
+        z = rope.scale(np.array([k]), np.zeros(1))
+        F, G, Q, N, held, node = assembled(rope, k, factors, z)
+        p = np.zeros((1, F.shape[1] + 1, F.shape[2], 1), dtype=np.clongdouble)
+        for (coordinate, at), amount in loads.items():
+            along = np.flatnonzero(own == SIX.index(coordinate))
+            p[0, node[np.abs(rope.x - at).argmin()], along, 0] += amount * z[0, along]
+        u, f = solved(F, G, Q, N, held, rope.blocks.absent[k], p)
+        sums = np.zeros(u.shape, dtype=np.clongdouble)
+        sums[:, 1:] += f
+        sums[:, :-1] += Q @ u[:, :-1] - F.swapaxes(2, 3) @ f
+        displacement[:, own] = (u[0, node, :, 0] * z[0]).real
+        force[:, own] = (sums[0, node, :, 0] / z[0]).real
+    return displacement, force
 
 
 def applied(F, G, Q, N, held, u, f):
