@@ -49,6 +49,8 @@ class Assembly:
     z : ndarray, shape (n, width)
     doubt : ndarray, shape (n, parts + 1)
         What rounding may have done to N, where wires are carried.
+    feet : tuple of Foot
+        Of the wires.
     """
 
     D: Complex
@@ -60,6 +62,7 @@ class Assembly:
     node: Index
     z: Real
     doubt: Real
+    feet: tuple[Foot, ...] = ()
     inner: Index | None = None
 
     @property
@@ -181,14 +184,15 @@ def assemble(
     N = np.zeros((len(rates), node[-1] + 1, width, width), dtype=np.complex128)
     N[:, node] = rope.nodes(which, factors) * (z[:, None, :, None] * z[:, None, None, :])
     doubt = np.zeros(N.shape[:2])
-    for wire in rope.carried:
-        foot, at = foot_of(wire, factors), node[wire.node]
+    feet = tuple(foot_of(wire, factors) for wire in rope.carried)
+    for wire, foot in zip(rope.carried, feet):
+        at = node[wire.node]
         N[:, at] += foot.stiffness * (z[:, :, None] * z[:, None, :])
         doubt[:, at] += (foot.doubt * (z[:, :, None] * z[:, None, :])).max((1, 2))
     absent = np.broadcast_to(blocks.absent[which], z.shape)
     held = np.tile(absent[:, None], (1, node[-1] + 1, 1))
     held[:, node] |= blocks.held[which]
-    return Assembly(D, G, Q, N, held, absent, node, z, doubt)
+    return Assembly(D, G, Q, N, held, absent, node, z, doubt, feet)
 
 
 class Foot(NamedTuple):

@@ -20,7 +20,7 @@ from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ..scene import damping
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.scene import Scene
-from .assembly import Assembly, LoadedFields, assemble, bound, foot_of
+from .assembly import Assembly, LoadedFields, assemble, bound
 from .compile import finer_rope
 from .rope import SIX, Factors, SpaceRope
 
@@ -56,13 +56,13 @@ def solve_frf(
     drives, several = checked_points(scene, drive, "drive")
     given = response is not None
     responses = checked_points(scene, response, "response", tips=True)[0] if given else drives
-    asked = Request.of(scene, rope, f, drives, responses)
+    asked, answered = Request.of(scene, rope, f, drives, responses), slice(None) if several else 0
     receptance = asked.receptance()
     power = (2j * math.pi * f) ** QUANTITIES[quantity]
-    value = (receptance * power)[slice(None) if several else 0]
+    value = (receptance * power)[answered]
 
     def rounding() -> RoundingOfResponse:
-        limit = (asked.rounding() * np.abs(power))[slice(None) if several else 0]
+        limit = (asked.rounding() * np.abs(power))[answered]
         return RoundingOfResponse.of(value, limit)
 
     def mesh() -> MeshOfResponse:
@@ -73,7 +73,7 @@ def solve_frf(
         size = np.abs(other)
         off = np.abs(receptance - other)
         error = np.divide(off, size, where=size > 0, out=np.where(off > 0, np.inf, 0.0))
-        return MeshOfResponse(error[slice(None) if several else 0])
+        return MeshOfResponse(error[answered])
 
     return FRF(
         drive=drives,
@@ -143,7 +143,7 @@ class Request:
         value = np.zeros(self._shape, dtype=np.complex128)
         for side, lines, system in self._systems():
             motion = self._solved(system, side, lines, 0).u
-            row, _ = self._rows(system, side, lines, 1)
+            row, _ = self._rows(system, side, 1)
             seen = np.einsum("lrc,lrcd->drl", row, motion[:, system.node[side.node[1]]])
             value[(*side.pairs, lines)] = seen
         return value
@@ -153,7 +153,7 @@ class Request:
         limit = np.zeros(self._shape)
         for side, lines, system in self._systems():
             one, other = (self._solved(system, side, lines, i) for i in (0, 1))
-            _, doubt = self._rows(system, side, lines, 1)
+            _, doubt = self._rows(system, side, 1)
             moved = np.abs(one.u[:, system.node[side.node[1]]])
             seen = np.einsum("lrc,lrcd->drl", doubt, moved)
             limit[(*side.pairs, lines)] = bound(system, one, other).transpose(1, 2, 0) + seen
@@ -189,7 +189,7 @@ class Request:
         """Return motion and force of unit loads on drives (0) or responses (1)."""
         node, n, f = system.node[side.node[end]], len(system.D), self.frequency[lines]
         load = np.zeros((n, system.parts + 1, system.width, len(node)), dtype=np.complex128)
-        row, _ = self._rows(system, side, lines, end)
+        row, _ = self._rows(system, side, end)
         load[:, node, :, np.arange(len(node))] = row.swapaxes(0, 1)
         load[system.held] = 0.0
         none = np.zeros((n, system.parts, system.width, len(node)))
@@ -201,17 +201,14 @@ class Request:
             )
         return LoadedFields(*system.apart(x), load)
 
-    def _rows(
-        self, system: Assembly, side: AskedPart, lines: slice, end: int
-    ) -> tuple[Complex, Real]:
+    def _rows(self, system: Assembly, side: AskedPart, end: int) -> tuple[Complex, Real]:
         """Return what points see of their nodes, (n, points, width), and its rounding."""
         points = side.point[end]
         row = np.zeros((len(system.z), len(points), system.width), dtype=np.complex128)
         doubt = np.zeros(row.shape)
-        factors = Factors(*(one[lines] for one in self.factors))
         for k, (coordinate, at) in enumerate(points):
             if coordinate == WIRE:
-                foot = foot_of(self.rope.carried[int(at)], factors)
+                foot = system.feet[int(at)]
                 row[:, k], doubt[:, k] = foot.seen * system.z, foot.seen_doubt * system.z
             else:
                 along = side.own.index(coordinate)

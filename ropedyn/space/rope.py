@@ -125,16 +125,16 @@ class SpaceRope:
         return ALL if tied or self.carried else PLANES
 
     @computed
-    def blocks(self) -> OwnMatrices:
-        """The matrices of each component, the components before all else."""
+    def blocks(self) -> SpaceRope:
+        """It with the matrices (components, .., width, width) of each component in place of its."""
         own = self.own
         rows, columns = own[:, :, None], own[:, None, :]
-        blocks = {
+        blocks: dict[str, Any] = {
             k: np.stack([getattr(self, k)[..., r, c] for r, c in zip(rows, columns)])
             for k in MATRICES
         }
         held, absent = self.held[:, own].swapaxes(0, 1), self.absent[own]
-        return OwnMatrices(**blocks, held=held, absent=absent)
+        return replace(self, held=held, absent=absent, **blocks)
 
     def has_inertia(self, coordinates: tuple[str, ...]) -> bool:
         """Whether any of some coordinates has inertia."""
@@ -308,24 +308,6 @@ SAMPLED = ("bend", "soft", "string", "initial", "stress")
 PIECEWISE = ("inertia", "drag")
 NODAL = ("springs", "masses", "dashpots", "held")
 MATRICES = (*SAMPLED, *PIECEWISE, "turn", *NODAL[:3])
-
-
-class OwnMatrices(NamedTuple):
-    """Matrices (components, .., width, width) of what moves together, as those of the rope."""
-
-    bend: Matrices
-    soft: Matrices
-    string: Matrices
-    initial: Matrices
-    stress: Matrices
-    inertia: Matrices
-    drag: Matrices
-    turn: Matrices
-    springs: Matrices
-    masses: Matrices
-    dashpots: Matrices
-    held: Flags
-    absent: Flags
 
 
 def unforced(eigenvalue: Real | list[float], step: float = 0.0) -> Factors:
