@@ -125,9 +125,11 @@ class Request:
         frequency: Real,
         drives: Sequence[Point],
         responses: Sequence[Point],
+        *,
+        decay: float | Real = 0.0,
     ) -> Request:
-        """Cut the rope at the points."""
-        omega = 2 * math.pi * frequency
+        """Cut the rope at the points; motion is e^(s t), s = 2 pi i frequency + decay."""
+        omega = 2 * math.pi * frequency - 1j * decay
         by = damping.factors(scene.dampings, omega).T
         factors = Factors(*by, *np.ones((1, len(omega)), dtype=np.complex128))
         points, both = (tuple(drives), tuple(responses)), len(drives)

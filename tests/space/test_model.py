@@ -198,7 +198,7 @@ def test_what_curvature_changes_is_priced():
 
 
 def test_other_verbs_are_refused_by_name():
-    for name in ("transient", "floquet", "stability_map", "stepped_sine"):
+    for name in ("floquet", "stability_map", "matrices"):
         with pytest.raises(rd.SceneError, match=f"{name} is not carried for a rope on an axis"):
             getattr(MODEL, name)
         with pytest.raises(rd.SceneError, match=f"{name} is not carried for a rope with torque"):
