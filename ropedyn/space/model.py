@@ -290,6 +290,7 @@ class SpaceModel(Frozen):
         quantity: str = "receptance",
         solver: str = "sweep",
         threads: int | None = None,
+        decay: float = 0.0,
     ) -> FRF:
         """Compute the frequency response to a harmonic force or moment.
 
@@ -308,11 +309,13 @@ class SpaceModel(Frozen):
             There is no other.
         threads : int, optional
             One finds it whatever is given.
+        decay : float, optional
+            [1/s]: the response at i omega + decay, of force and motion both times exp(-decay t).
 
         Returns
         -------
         FRF
-            Motion is Re(value exp(+i omega t)).
+            Motion is Re(value exp(+i omega t)), times exp(decay t).
 
         Raises
         ------
@@ -339,9 +342,8 @@ class SpaceModel(Frozen):
         _only_sweep(self.scene, solver)
         if threads is not None:
             check.count(threads, "threads", most=1024)
-        return solve_frf(
-            self.scene, self.rope, frequency, drive=drive, response=response, quantity=quantity
-        )
+        asked: Any = {"drive": drive, "response": response, "quantity": quantity, "decay": decay}
+        return solve_frf(self.scene, self.rope, frequency, **asked)
 
     @waited
     def static(

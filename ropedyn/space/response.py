@@ -48,7 +48,14 @@ def wires_of(scene: Scene) -> int:
 
 
 def solve_frf(
-    scene: Scene, rope: SpaceRope, frequency: Any, *, drive: Any, response: Any, quantity: str
+    scene: Scene,
+    rope: SpaceRope,
+    frequency: Any,
+    *,
+    drive: Any,
+    response: Any,
+    quantity: str,
+    decay: float = 0.0,
 ) -> FRF:
     """Compute the frequency response; see `SpaceModel.frf`."""
     check.one_of(quantity, "quantity", QUANTITIES)
@@ -56,9 +63,10 @@ def solve_frf(
     drives, several = checked_points(scene, drive, "drive")
     given = response is not None
     responses = checked_points(scene, response, "response", tips=True)[0] if given else drives
-    asked = Request.of(scene, rope, f, drives, responses)
+    decay = check.number(decay, "decay", "1/s", sign="nonnegative")
+    asked = Request.of(scene, rope, f, drives, responses, decay=decay)
     receptance = asked.receptance()
-    power = (2j * math.pi * f) ** QUANTITIES[quantity]
+    power = (2j * math.pi * f + decay) ** QUANTITIES[quantity]
     value = (receptance * power)[slice(None) if several else 0]
 
     def rounding() -> RoundingOfResponse:
@@ -69,7 +77,7 @@ def solve_frf(
         finer = finer_rope(scene, rope)
         if finer is None:
             return MeshOfResponse(np.zeros(value.shape))
-        other = Request.of(scene, finer, f, drives, responses).receptance()
+        other = Request.of(scene, finer, f, drives, responses, decay=decay).receptance()
         size = np.abs(other)
         off = np.abs(receptance - other)
         error = np.divide(off, size, where=size > 0, out=np.where(off > 0, np.inf, 0.0))
@@ -90,6 +98,7 @@ def solve_frf(
         rounding=Late(rounding),
         mesh=mesh,
         solve_rates=_refuse_rates,
+        decay=decay,
     )
 
 

@@ -235,7 +235,7 @@ class SpaceRope:
         # across it and 1/(B a) of rotation, of a string 1/(T k); none of these wavenumbers is less
         # than curvature and length tell
         least = self.least
-        load = np.abs(np.asarray(eigenvalue)) * self.inertia[:, 1, 1].max()
+        load = np.abs(np.asarray(eigenvalue)) * self.inertia[:, 1, 1].real.max()
         if self.softest[0] > 0:
             soft = self.stiffest
             half = soft * self.pull / 2
