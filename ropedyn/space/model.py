@@ -27,7 +27,7 @@ from ..scene.card import Card, card, card_html, card_text
 from ..scene.scene import Scene
 from .compile import rope_of_scene
 from .modes import solve_modes
-from .motion import solve_transient
+from .motion import solve_stepped, solve_transient
 from .response import solve_frf
 from .rope import SIX, SpaceRope
 from .shape import ShapeInSpace
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ELSEWHERE = (
-    *("floquet", "stability_map", "stepped_sine", "matrices", "triples"),
+    *("floquet", "stability_map", "matrices", "triples"),
     *("node_terms", "chain", "mesh_order"),
 )
 """What a model of a straight rope has that this one does not carry."""
@@ -491,6 +491,64 @@ class SpaceModel(Frozen):
             progress=progress,
             partial=partial,
         )
+
+    @waited
+    def stepped_sine(
+        self,
+        frequency: ArrayLike,
+        *,
+        drive: Point,
+        amplitude: float,
+        response: Point | Sequence[Point] | None = None,
+        branches: bool = False,
+        quantity: str = "receptance",
+        tolerance: float | None = None,
+        progress: Progress = None,
+    ) -> FRF:
+        """Find the steady motion under a sine whose frequency is stepped: that of `frf`.
+
+        Parameters
+        ----------
+        frequency : array_like, shape (f,)
+            [Hz], each > 0, in any order.
+        drive : point, such as ``("z", 0.5)``
+        amplitude : float
+            Of a sine [N, N m].
+        response : point or list of points, optional
+            What is watched; the drive point where left out.
+        branches : False
+            Linear motion has one.
+        quantity : {"receptance", "mobility", "accelerance"}
+            Displacement, velocity or acceleration, per amplitude.
+        tolerance, progress : optional
+            Of `Model.stepped_sine`: nothing is iterated here.
+
+        Returns
+        -------
+        FRF
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a value has no meaning; a `LossFactor`.
+        SolveError
+            If there is no steady state, or a frequency lies on an undamped resonance.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(
+        ...     rd.Axis.arc(1.0, 2.0), 0.5, bending_stiffness=50.0, torsional_stiffness=30.0
+        ... )
+        >>> model = rd.Scene(rope, planes="both").compile()
+        >>> model.stepped_sine([12.0, 15.0], drive=("y", 0.5), amplitude=2.0).stable
+        array([ True,  True])
+        """
+        asked: Any = {"drive": drive, "response": response, "quantity": quantity}
+        asked |= {"amplitude": amplitude, "branches": branches, "tolerance": tolerance}
+        return solve_stepped(self, frequency, progress=progress, **asked)
 
 
 def _only_sweep(scene: Scene, solver: Any) -> None:

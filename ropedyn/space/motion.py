@@ -14,17 +14,19 @@ from ..base.array import Complex, Real
 from ..base.computed import Late, changed
 from ..base.errors import SceneError, SolveError
 from ..base.progress import reporter
-from ..base.unit import MOTIONS
+from ..base.unit import MOTIONS, push_unit
 from ..chain.port import Point
 from ..motion.history import History
 from ..motion.line.transfer import growth_below
 from ..motion.linear import solve_linear, within_tolerance
+from ..motion.modal.expansion import refuse_losses
 from ..motion.request import Run, acting_forces, checked_snapshots, checked_times
 from ..response.critical import exceeds
 from ..response.deflection import Deflection, summed_loads
+from ..response.frf import FRF
 from ..scene.agree import in_space
 from .compile import finer_rope
-from .response import Request, checked_points
+from .response import Request, checked_points, solve_frf
 from .rope import SIX
 from .spectrum import count_below, lowest
 
@@ -84,6 +86,39 @@ def solve_transient(
         mesh_error=Late(partial(_mesh, run.kept, history.value)),
         balance=partial(_refuse_energy, what),
     )
+
+
+def solve_stepped(
+    model: SpaceModel,
+    frequency: Any,
+    *,
+    drive: Any,
+    amplitude: float,
+    branches: bool,
+    tolerance: float | None,
+    progress: Any,
+    **asked: Any,
+) -> FRF:
+    """Find the steady motion under a sine; see `SpaceModel.stepped_sine`."""
+    drives, several = checked_points(model.scene, drive, "drive")
+    if several:
+        raise SceneError(f"drive must be one point, got {len(drives)}")
+    if branches is not False:
+        raise SceneError(
+            f"branches must be False for {in_space(model.scene)}, whose linear motion has one, got "
+            f"{check.shown(branches)}"
+        )
+    f = check.frequencies(frequency)
+    if not f.min() > 0:
+        raise SceneError(f"frequency must be > 0 [Hz], got {float(f.min())!r}: that is `static`")
+    check.number(amplitude, "amplitude", push_unit(drives[0]), sign="positive")
+    check.optional(tolerance, "tolerance", sign="positive")
+    refuse_losses(model)  # type: ignore[arg-type]  # of a scene
+    if count_below(model.rope, 0.0):
+        raise SolveError("there is no steady state: the compression is beyond critical")
+    frf = solve_frf(model.scene, model.rope, f, drive=drives[0], **asked)
+    reporter(progress)(1.0)
+    return changed(frf, stable=np.ones(len(f), dtype=np.bool_))
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import ropedyn as rd
+from ropedyn.cli.command import main
 from ropedyn.space.model import compile_space
 from ropedyn.space.motion import SpaceTransfer
 
@@ -178,3 +179,61 @@ def test_compression_beyond_critical_does_not_rest():
     buckled = rd.Scene(ARC, ends=("pinned", "pinned"), planes="both", tension=-900.0).compile()
     with pytest.raises(rd.SolveError, match="the rope does not stay at rest"):
         buckled.transient(TIME[:11], start={AT: 1.0}, response=AT)
+
+
+def test_stepped_sine_is_the_frequency_response():
+    asked = {"drive": AT, "response": [SEEN], "quantity": "mobility"}
+    stepped = MODEL.stepped_sine([12.0, 3.0], amplitude=2.0, **asked)
+    np.testing.assert_array_equal(stepped.value, MODEL.frf([12.0, 3.0], **asked).value)
+    assert stepped.stable.all()
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"branches": True}, "branches must be False for a rope on an axis"),
+        ({"drive": [AT, SEEN]}, "drive must be one point, got 2"),
+        ({"frequency": [0.0]}, "frequency must be > 0"),
+        ({"amplitude": 0.0}, "amplitude must be a finite number > 0"),
+    ],
+)
+def test_what_has_no_stepped_sine_is_refused_by_name(asked, message):
+    given = {"frequency": [12.0], "drive": AT, "amplitude": 1.0} | asked
+    with pytest.raises(rd.SceneError, match=message):
+        MODEL.stepped_sine(given.pop("frequency"), **given)
+
+
+def test_response_that_decays_is_that_at_a_complex_rate():
+    """Motion e^(s t) of an arch with drag c is that without it at a shifted inertia."""
+    value = MODEL.frf([3.0], drive=AT, response=[SEEN], decay=2.0).value
+    s = 2j * np.pi * 3.0 + 2.0
+    modes = MODEL.modes(80, points=400)
+    at = [int(np.abs(modes.x - place).argmin()) for place in (AT[1], SEEN[1])]
+    z = modes.coordinates.index("z")
+    residue = modes.shape[:, at[0], z] * modes.shape[:, at[1], z] / modes.modal_mass
+    summed = (residue / (s * s + s * DRAG / DENSITY + modes.eigenvalue)).sum()
+    # modes beyond 80 were 3e-7 of it
+    assert value[0, 0] == pytest.approx(summed, rel=1e-5)
+
+
+def test_axis_is_priced_by_motion():
+    question = rd.ask.motion(TIME[:81], drive=AT, force=rd.Sine(1.0, 9.0))
+    table = rd.effect_cost(ARCH, question, repeat=1).table()
+    straight = ARCH.without("axis").compile().transient(TIME[:81], **PUSH).value
+    curved = MODEL.transient(TIME[:81], **PUSH).value
+    change = 100 * np.abs(straight - curved).max() / np.abs(curved).max()
+    largest = table.column("largest [%]")[table.column("left out").index("axis")]
+    assert largest == pytest.approx(change, rel=1e-2)
+
+
+def test_history_is_saved_and_a_scene_moves_from_the_command_line(tmp_path, capsys):
+    history = MODEL.transient(TIME[:81], **PUSH)
+    history.save(tmp_path / "motion.npz")
+    np.testing.assert_array_equal(rd.load(tmp_path / "motion.npz").value, history.value)
+    ARCH.save(tmp_path / "arch.toml")
+    asked = ["--time", "0:0.06:81", "--drive", "z@0.5", "--force", "sine:1:9", "--csv"]
+    assert main(["transient", str(tmp_path / "arch.toml"), *asked]) == 0
+    rows = capsys.readouterr().out.splitlines()
+    assert rows[0] == "time,z_at_0_500_m" and rows[1] == "s,m"
+    found = np.array([float(row.split(",")[1]) for row in rows[2:]])
+    assert found == pytest.approx(history.value[0], abs=1e-6 * np.abs(found).max())
