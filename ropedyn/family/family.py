@@ -24,8 +24,8 @@ from ..chain.place import observed, points
 from ..eigen.spectrum import eigenvalue_of
 from ..response.question import workers_of
 from ..scene.scene import Scene
+from ..space import response as space_response
 from ..space.model import compile_space
-from ..space.response import checked_points
 from .alone import count_of_row, frf_of_row, modes_of_row
 from .closed import Component, closed_counts, closed_modes, components_of
 from .frf import FamilyFRF
@@ -272,9 +272,8 @@ class Family:
         # what is asked is refused before anything runs, and its shape is known
         check.one_of(quantity, "quantity", QUANTITIES)
         if self.scene.is_spatial:
-            drives, several = checked_points(self.scene, drive, "drive")
-            own = response if response is not None else drives
-            watched, swept = checked_points(self.scene, own, "response", tips=True)[0], None
+            drives, several = space_response.checked_points(self.scene, drive, "drive")
+            watched, swept = space_response.watched(self.scene, response, drives), None
         else:
             model = compile_scene(self.scene, elements=self.elements, element=self.element)
             drives, several = points(model, drive, "drive", forces=False, ends=True)

@@ -26,7 +26,7 @@ from ..response.deflection import Deflection, summed_loads
 from ..response.frf import FRF
 from ..scene.agree import in_space
 from .compile import finer_rope
-from .response import Request, checked_points, solve_frf
+from .response import Request, checked_points, solve_frf, watched
 from .rope import SIX
 from .spectrum import count_below, lowest
 
@@ -59,17 +59,12 @@ def solve_transient(
     check.one_of(quantity, "quantity", MOTIONS)
     _refuse_others(what, method, others)
     drives, forces = _driven(model, drive, force, t)
-    watched = drives
-    if response is not None:
-        watched = checked_points(model.scene, response, "response", tips=True)[0]
-    elif drive is None:
-        raise SceneError("response must be given where nothing is driven, got None")
     run: Any = Run(
         model,  # type: ignore[arg-type]  # of a chain only its own methods ask for more
         t,
         drives,
         forces,
-        watched,
+        watched(model.scene, response, drives),
         direct=False,
         method="line",
         order=MOTIONS[quantity],
@@ -177,15 +172,13 @@ def _driven(
     if drive is None:
         return (), ()
     drives, several = checked_points(model.scene, drive, "drive")
-    cut, node = model.rope.cut(np.array([at for _, at in drives]), _near(model))
-    for at, point in zip(node, drives):
+    pushed = [point for point in drives if not check.is_end(point)]
+    near = check.NEAR * model.scene.rope.length
+    cut, node = model.rope.cut(np.array([at for _, at in pushed]), near)
+    for at, point in zip(node, pushed):
         if cut.held[at, SIX.index(point[0])]:
             raise SceneError(f"drive must be free to move, got {point}, which a support holds")
     return drives, acting_forces(drives, force, time, several=several)
-
-
-def _near(model: SpaceModel) -> float:
-    return check.NEAR * model.scene.rope.length
 
 
 def _released(model: SpaceModel, start: Any) -> dict[Point, float]:

@@ -248,7 +248,6 @@ REFUSED = {
     'solver must be "sweep"': lambda: MODEL.modes(2, solver="lapack"),
     "give either number or below": MODEL.modes,
     "points must be a whole number": lambda: MODEL.modes(2, points=0),
-    "drive must not be the motion of an end": lambda: MODEL.frf([1.0], drive=("end", 0, "z")),
     "drive[1] must lie on the rope": lambda: MODEL.frf([1.0], drive=("z", 9.0)),
     "below must be a finite number > 0": lambda: MODEL.count(below=0.0),
     "load must be a mapping": lambda: MODEL.static({}),
