@@ -8,6 +8,7 @@ from ..base import check
 from ..base.errors import SceneError
 from ..scene.end import end_of
 from ..scene.parts.broken_wire import BrokenWire
+from ..scene.scene import Scene
 from .compiled import Compiled
 from .port import Point
 
@@ -23,7 +24,7 @@ def points(
     for k, one in enumerate(given if several else (given,)):
         called = f"{name}[{k}]" if several else name
         if ends and check.is_end(one):
-            found.append(_end(model, one, called))
+            found.append(moved_end(model.scene, one, called))
             continue
         found.append(
             check.point(
@@ -54,13 +55,13 @@ def refuse_slack(model: Compiled, point: Point, name: str) -> None:
             )
 
 
-def _end(model: Compiled, given: Any, name: str) -> Any:
+def moved_end(scene: Scene, given: Any, name: str) -> Any:
     """Return an end that is moved: it must hold the coordinate."""
-    _, number, coordinate = found = check.end(given, name, model.coordinates)
-    if coordinate not in end_of(model.scene.ends[number]).term().held:
+    _, number, coordinate = found = check.end(given, name, scene.coordinates)
+    if coordinate not in end_of(scene.ends[number]).term().held:
         raise SceneError(
             f"{name} must be a coordinate that the end holds, got {coordinate!r} of "
-            f"{check.shown(model.scene.ends[number])}"
+            f"{check.shown(scene.ends[number])}"
         )
     return found
 

@@ -19,7 +19,7 @@ from ..base.errors import SceneError
 from ..base.table import Table
 from .damage import Damage, damage_of
 from .free_motion import FreeMotion, MeshOfModes, Vectors
-from .sensitivity import Sensitivity, Shapes
+from .sensitivity import Shapes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -148,7 +148,7 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     damping_ratio = Read[Real]("vectors", "Damping ratio of each mode, shape (k,).")
 
     @computed
-    def sensitivity(self) -> Sensitivity:
+    def sensitivity(self) -> Any:
         """What derivatives are computed from.
 
         Examples
@@ -158,7 +158,7 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         >>> modes.sensitivity.frequency("tension")[:1].round(6)
         array([0.0125])
         """
-        return Sensitivity(self._solved_again())
+        return self._solved_again().sensitivity
 
     def _solved_again(self, points: int | None = None) -> Shapes:
         if self.solve_shapes is None:

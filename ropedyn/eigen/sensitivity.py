@@ -48,6 +48,11 @@ class Shapes:
     which: Index  # (k,) the component of each
     beyond: float  # no other eigenvalue is less [rad^2/s^2]
 
+    @property
+    def sensitivity(self) -> Sensitivity:
+        """What derivatives are computed from."""
+        return Sensitivity(self)
+
 
 def clusters_of(eigenvalue: Real, error: Real) -> tuple[Index, ...]:
     """Return which of increasing eigenvalues are not further apart than their errors."""
@@ -293,15 +298,20 @@ class Sensitivity:
 
     def _root(self, path: str, sign: float) -> Real:
         """Return d sqrt(sign lambda)/dp."""
-        change, value = sign * self.eigenvalue(path), sign * self.shapes.eigenvalue
-        leaving = np.flatnonzero((value == 0.0) & (change != 0.0))
-        if len(leaving):
-            raise SolveError(
-                f"mode {leaving[0] + 1} has the eigenvalue 0, which changes with {path}: the root "
-                'of it has no derivative there, ask for that of="eigenvalue"'
-            )
-        root = 2 * np.sqrt(np.maximum(value, 0.0))
-        return np.divide(change, root, out=np.zeros_like(change), where=root > 0)
+        return root_slope(path, self.eigenvalue(path), self.shapes.eigenvalue, sign)
+
+
+def root_slope(path: str, change: Real, value: Real, sign: float) -> Real:
+    """Return d sqrt(sign lambda)/dp of eigenvalues and their derivatives."""
+    change, value = sign * change, sign * value
+    leaving = np.flatnonzero((value == 0.0) & (change != 0.0))
+    if len(leaving):
+        raise SolveError(
+            f"mode {leaving[0] + 1} has the eigenvalue 0, which changes with {path}: the root "
+            'of it has no derivative there, ask for that of="eigenvalue"'
+        )
+    root = 2 * np.sqrt(np.maximum(value, 0.0))
+    return np.divide(change, root, out=np.zeros_like(change), where=root > 0)
 
 
 def sizes(of: _Arrays) -> _Arrays:

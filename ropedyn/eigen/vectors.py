@@ -149,6 +149,8 @@ def shapes_at(modes: Modes, points: Sequence[Point]) -> Real:
     """Return the shapes of modes at points of the rope."""
     # inside elements of a chain that of the element between its nodes; continuous spans are cut
     # there, which changes nothing
+    if modes.line is not None:
+        return modes.sensitivity.shapes_at(points)
     shapes, number = modes.sensitivity.shapes, len(modes.frequency)
     model = shapes.model
     inside = [at for _, at in points if locate(model.x, at)[1] is not None]

@@ -16,12 +16,18 @@ from .template import SPRING, Template
 
 def modes_of_row(template: Template, number: int, derivative: bool, row: Real) -> tuple[Any, ...]:
     """Find the modes of a row."""
-    modes = solve_modes(template.compiled(row), number, below=None, solver="sweep", strict=False)
+    modes = _modes(template, number, row)
     each = [modes.frequency, modes.eigenvalue, modes.rounding_error]
     if derivative:
         each.append(_derivatives(template, modes, row))
     frequency, eigenvalue, error, *slope = (_filled(one, number) for one in each)
     return frequency, eigenvalue, error, modes.certified, *slope
+
+
+def _modes(template: Template, number: int, row: Real) -> Modes:
+    if template.scene.is_spatial:
+        return template.spatial(row).modes(number, points=1)
+    return solve_modes(template.compiled(row), number, below=None, solver="sweep", strict=False)
 
 
 def _filled(each: Real, number: int) -> Real:
@@ -54,6 +60,8 @@ def _eigenvalue_slope(path: str, modes: Modes, value: float) -> Real:
 
 def count_of_row(template: Template, below: float, row: Real) -> tuple[int]:
     """Count the modes of a row."""
+    if template.scene.is_spatial:
+        return (template.spatial(row).count(below=below),)
     return (count_modes(template.compiled(row), below),)
 
 
@@ -61,5 +69,8 @@ def frf_of_row(
     template: Template, frequency: Real, asked: dict[str, Any], row: Real
 ) -> tuple[Complex, Real]:
     """Compute the response of a row."""
-    found = solve_harmonic(template.compiled(row), frequency, threads=1, **asked)
+    if template.scene.is_spatial:
+        found = template.spatial(row).frf(frequency, **asked)
+    else:
+        found = solve_harmonic(template.compiled(row), frequency, threads=1, **asked)
     return found.value, found.rounding_error

@@ -54,7 +54,8 @@ class Component(NamedTuple):
 
 def components_of(template: Template) -> tuple[Component, ...]:
     """Return what moves in closed form: nothing where some does not, or a path does not act."""
-    if template.elements is not None or template.element not in (None, "continuous"):
+    elements = template.elements is not None or template.element not in (None, "continuous")
+    if elements or template.scene.is_spatial:
         return ()
     row = template.row
     probe = row + PROBE * np.arange(1, len(row) + 1) * row

@@ -24,6 +24,8 @@ from ..chain.place import observed, points
 from ..eigen.spectrum import eigenvalue_of
 from ..response.question import workers_of
 from ..scene.scene import Scene
+from ..space import response as space_response
+from ..space.model import compile_space
 from .alone import count_of_row, frf_of_row, modes_of_row
 from .closed import Component, closed_counts, closed_modes, components_of
 from .frf import FamilyFRF
@@ -268,13 +270,17 @@ class Family:
         asked = {"drive": drive, "response": response, "quantity": quantity}
         rows = self._checked(values)
         # what is asked is refused before anything runs, and its shape is known
-        model = compile_scene(self.scene, elements=self.elements, element=self.element)
-        drives, several = points(model, drive, "drive", forces=False, ends=True)
-        watched = observed(model, response, drives)
         check.one_of(quantity, "quantity", QUANTITIES)
+        if self.scene.is_spatial:
+            drives, several = space_response.checked_points(self.scene, drive, "drive")
+            watched, swept = space_response.watched(self.scene, response, drives), None
+        else:
+            model = compile_scene(self.scene, elements=self.elements, element=self.element)
+            drives, several = points(model, drive, "drive", forces=False, ends=True)
+            watched = observed(model, response, drives)
+            swept = asked_of_rows(model, f, drives, watched, quantity, several=several)
         shape = (len(rows), *((len(drives),) if several else ()), len(watched), len(f))
         blank = [np.full(shape, np.nan + 0j), np.full(shape, np.nan)]
-        swept = asked_of_rows(model, f, drives, watched, quantity, several=several)
         stages = self._stages(
             blank,
             partial(closed_frf, self._closed, swept) if swept else None,
@@ -351,5 +357,6 @@ def compile_family(
     """Compile a scene and the numbers that differ; see `Scene.family`."""
     known = template(scene, paths)
     if elements is not None or element not in (None, "continuous"):
-        compile_scene(scene, elements=elements, element=element)
+        compile_one = compile_space if scene.is_spatial else compile_scene
+        compile_one(scene, elements=elements, element=element)
     return Family(scene, known.paths, elements, element)

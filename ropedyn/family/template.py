@@ -15,10 +15,10 @@ from ..base.array import Real
 from ..base.errors import SceneError
 from ..chain.compile import compile_scene
 from ..chain.compiled import Compiled, refuse_nonlinear
-from ..scene.agree import refuse_axis
 from ..scene.end import End, end_of
 from ..scene.path import value_at, with_values
 from ..scene.scene import Scene
+from ..space.model import SpaceModel, compile_space
 
 SPRING = re.compile(rf"ends\[([01])\]\.spring\.({'|'.join(check.COORDINATES)})")
 
@@ -30,6 +30,10 @@ class Template(NamedTuple):
     paths: tuple[str, ...]
     elements: int | None = None
     element: str | None = None
+
+    def spatial(self, row: Real) -> SpaceModel:
+        """Compile the scene of a row on an axis."""
+        return compile_space(self.at(row), elements=self.elements, element=self.element)
 
     def compiled(self, row: Real) -> Compiled:
         """Compile the scene of a row."""
@@ -64,7 +68,6 @@ class Template(NamedTuple):
 
 def template(scene: Scene, paths: Iterable[str]) -> Template:
     """Check that paths lead to numbers of a scene, each once."""
-    refuse_axis(scene, "a family or a fit")
     if isinstance(paths, str):
         raise TypeError(f'paths must be a list such as ["tension"], got {paths!r}')
     named = tuple(_known(scene, path) for path in paths)

@@ -25,7 +25,6 @@ from ..response.moved_end import is_end
 from ..scene import damping
 from .history import History
 from .line.inversion import invert
-from .line.transfer import Transfer
 from .mesh_error import against_spans
 from .modal.energy_balance import balance
 from .modal.expansion import refuse_losses
@@ -235,12 +234,12 @@ def _is_still(run: Run, response: int) -> bool:
     places = tuple(dict.fromkeys([*run.places, own]))
     omega = np.pi * (len(run.time) - 1) / float(run.time[-1] - run.time[0])
     s = omega * 2.0 ** -np.linspace(0.0, OCTAVES, RATES) * np.exp(0.4j * np.pi)
-    across = Transfer(run.model, places, (own,)).at(s)
+    across = run.look(places, (own,)).at(s)
     itself = np.abs(across[places.index(own), 0])
     for place in run.places:
         if is_end(place):
             return False
-        most = np.sqrt(itself * np.abs(Transfer(run.model, (place,), (place,)).at(s)[0, 0]))
+        most = np.sqrt(itself * np.abs(run.look((place,), (place,)).at(s)[0, 0]))
         if (np.abs(across[places.index(place), 0]) > STILL * most).any():
             return False
     return True

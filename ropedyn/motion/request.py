@@ -20,6 +20,7 @@ from ..response.moved_end import is_end
 from ..scene.force import Force, Impulse, forces
 from ..scene.tension import Tension
 from .acting import scene_laws
+from .line.transfer import Look, Transfer
 from .start import Begun, kicked, released
 
 EVENTS = "events"
@@ -53,6 +54,8 @@ class Run:
     spectral_radius: float = 1.0  # of the direct method at infinite frequency
     progress: Callable[[float], Any] = silent  # takes the fraction that is done
     partial: bool = False  # whether what was computed until the numbers fail is an answer
+    # of the model, drives and responses; other kinds of ropes have their own
+    transfer: Callable[[Any, tuple[Any, ...], tuple[Point, ...]], Look] = Transfer
 
     @classmethod
     def of(
@@ -93,7 +96,7 @@ class Run:
             direct=direct,
             method=method,
             order=MOTIONS[quantity],
-            snapshots=_snapshots(snapshots, t),
+            snapshots=checked_snapshots(snapshots, t),
             modes=None if modes is None else check.count(modes, "modes", most=1_000_000),
             step=check.optional(step, "step", "s", sign="positive"),
             tolerance=check.optional(tolerance, "tolerance", sign="positive"),
@@ -115,6 +118,10 @@ class Run:
         """Return the same with other fields, also from the beginning at fewer places."""
         coarse = None if self.coarse is None else self.coarse.but(**fields)
         return replace(self, **({"coarse": coarse} | fields))
+
+    def look(self, drives: tuple[Any, ...], responses: tuple[Point, ...]) -> Look:
+        """Return transfer functions of the model."""
+        return self.transfer(self.model, drives, responses)
 
     @property
     def is_shaped(self) -> bool:
@@ -208,13 +215,20 @@ def _driven(
     drives, several = points(model, drive, "drive", forces=False, ends=True)
     for point in drives:
         _refuse_held(model, point)
+    return drives, acting_forces(drives, force, time, several=several)
+
+
+def acting_forces(
+    drives: tuple[Point, ...], force: Any, time: Real, *, several: bool
+) -> tuple[Force, ...]:
+    """Return the force on each drive; several: whether a list of them is given."""
     if not several:
-        return drives, (forces(force, "force", time, push_unit(drives[0])),)
+        return (forces(force, "force", time, push_unit(drives[0])),)
     if not isinstance(force, (tuple, list, np.ndarray)) or len(force) != len(drives):
         raise SceneError(
             f"force must be one for each of the {len(drives)} drives, got {check.shown(force)}"
         )
-    return drives, tuple(
+    return tuple(
         forces(one, f"force[{k}]", time, push_unit(drive))
         for k, (one, drive) in enumerate(zip(force, drives))
     )
@@ -228,7 +242,8 @@ def _refuse_held(model: Compiled, drive: Point) -> None:
         raise SceneError(f"drive must be free to move, got {drive}, which a support holds")
 
 
-def _snapshots(given: Any, time: Real) -> Real:
+def checked_snapshots(given: Any, time: Real) -> Real:
+    """Return times within others, none where none are given."""
     if given is None:
         return np.zeros(0)
     when = check.numbers(given, "snapshots", "s", sign="nonnegative")

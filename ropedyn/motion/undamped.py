@@ -17,6 +17,8 @@ from ..response.moved_end import is_end, moves_ends
 from ..response.question import Question
 from ..response.solvers import SOLVERS
 from ..scene.damping import INERTIA, having
+from ..scene.parts.broken_wire import BrokenWire
+from ..scene.parts.part import standing
 from ..signal import contour
 
 
@@ -86,4 +88,5 @@ class UndampedResponses:
 def losses_of(model: Compiled) -> list[str]:
     """Name the complex moduli, which have a meaning at each frequency, not in time."""
     losses = [one.kind for one in having(model.scene.dampings, "loss")]
-    return losses + ["damping ratio of a broken wire"] * model.chain.is_hysteretic
+    wires = (part for part in standing(model.scene.parts) if isinstance(part, BrokenWire))
+    return losses + ["damping ratio of a broken wire"] * any(one.damping_ratio for one in wires)

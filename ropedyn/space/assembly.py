@@ -241,12 +241,13 @@ class LoadedFields(NamedTuple):
 
     u: Any
     f: Any
-    load: Any
+    load: Any  # on nodes
+    slip: Any = 0.0  # of the motion between parts
 
     def left(self, system: Assembly) -> tuple[Any, Any]:
         """Return what the matrix takes of the loads that is not there."""
         p, d = system.apart(system.apply(system.together(self.u, self.f)))
-        return p - self.load, d
+        return p - self.load, d - self.slip
 
 
 def bound(system: Assembly, one: LoadedFields, other: LoadedFields) -> Real:

@@ -15,9 +15,11 @@ from ..base.array import Real
 from ..base.computed import waited
 from ..base.drawing import draw
 from ..base.errors import SceneError
+from ..base.progress import Progress
 from ..chain.port import Point
 from ..eigen.animation import VIEWS
 from ..eigen.modes import Modes
+from ..motion.history import History
 from ..response.deflection import Deflection
 from ..response.frf import FRF
 from ..scene.agree import in_space
@@ -25,6 +27,7 @@ from ..scene.card import Card, card, card_html, card_text
 from ..scene.scene import Scene
 from .compile import rope_of_scene
 from .modes import solve_modes
+from .motion import solve_stepped, solve_transient
 from .response import solve_frf
 from .rope import SIX, SpaceRope
 from .shape import ShapeInSpace
@@ -35,7 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ELSEWHERE = (
-    *("transient", "floquet", "stability_map", "stepped_sine", "matrices", "triples"),
+    *("floquet", "stability_map", "matrices", "triples"),
     *("node_terms", "chain", "mesh_order"),
 )
 """What a model of a straight rope has that this one does not carry."""
@@ -287,6 +290,7 @@ class SpaceModel(Frozen):
         quantity: str = "receptance",
         solver: str = "sweep",
         threads: int | None = None,
+        decay: float = 0.0,
     ) -> FRF:
         """Compute the frequency response to a harmonic force or moment.
 
@@ -305,11 +309,13 @@ class SpaceModel(Frozen):
             There is no other.
         threads : int, optional
             One finds it whatever is given.
+        decay : float, optional
+            [1/s]: the response at i omega + decay, of force and motion both times exp(-decay t).
 
         Returns
         -------
         FRF
-            Motion is Re(value exp(+i omega t)).
+            Motion is Re(value exp(+i omega t)), times exp(decay t).
 
         Raises
         ------
@@ -336,9 +342,8 @@ class SpaceModel(Frozen):
         _only_sweep(self.scene, solver)
         if threads is not None:
             check.count(threads, "threads", most=1024)
-        return solve_frf(
-            self.scene, self.rope, frequency, drive=drive, response=response, quantity=quantity
-        )
+        asked: Any = {"drive": drive, "response": response, "quantity": quantity, "decay": decay}
+        return solve_frf(self.scene, self.rope, frequency, **asked)
 
     @waited
     def static(
@@ -389,6 +394,161 @@ class SpaceModel(Frozen):
         _only_sweep(self.scene, solver)
         check.instance(unstable, "unstable", bool, "True or False")
         return solve_static(self.scene, self.rope, load, points=points, unstable=unstable)
+
+    @waited
+    def transient(
+        self,
+        time: ArrayLike,
+        *,
+        drive: Any = None,
+        force: Any = None,
+        response: Point | Sequence[Point] | None = None,
+        quantity: str = "displacement",
+        start: Any = None,
+        velocity: Any = None,
+        method: str = "auto",
+        modes: None = None,
+        step: None = None,
+        tolerance: float | None = None,
+        spectral_radius: float = 1.0,
+        snapshots: ArrayLike | None = None,
+        progress: Progress = None,
+        partial: bool = False,
+    ) -> History:
+        """Find the motion over time, by inversion of the exact transfer functions.
+
+        Parameters
+        ----------
+        time : array_like, shape (t,)
+            When the motion is asked for [s], increasing; it begins at the first.
+        drive : point or list of points, optional
+            What the force acts on, such as ``("y", 0.5)``. None: free motion.
+        force : array_like, shape (t,), Sine, Chirp, Step or Impulse, or a tuple of them (their sum)
+            [N, N m]; one for each of a list of drives. An array is straight between its samples.
+        response : point or list of points, optional
+            What is watched; the drive points where left out.
+        quantity : {"displacement", "velocity", "acceleration"}
+            Of the responses.
+        start : mapping from points to float, or Deflection, optional
+            Static loads [N, N m] that are let go at the first time.
+        velocity : mapping from points to float, optional
+            Impulses at the first time [N s, N m s].
+        method : {"auto", "line"}
+            Both are the line of `Model.transient`.
+        modes, step, spectral_radius, partial
+            Belong to other methods of a straight rope: to be left out.
+        tolerance : float, optional
+            Part of each response's largest value that errors keep to, 1e-3.
+        snapshots : array_like, optional
+            When the displacement of the whole rope is kept [s].
+        progress : None, True or callable
+            As in `Model.transient`.
+
+        Returns
+        -------
+        History
+            `error` covers that of every value; `mesh_error` is 0, or where something changes along
+            a piece the distance to what shorter pieces do. Energies are not carried.
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a value has no meaning, the answer is infinite, or the method is another.
+        SolveError
+            If the error exceeds the tolerance: by how much.
+
+        Examples
+        --------
+        An arch that is let go swings in its plane:
+
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(
+        ...     rd.Axis.arc(1.0, 2.0), 0.5, bending_stiffness=50.0, torsional_stiffness=30.0
+        ... )
+        >>> model = rd.Scene(rope, ends=("pinned", "pinned"), planes="both").compile()
+        >>> time = [0.0, 0.02, 0.04, 0.06, 0.08]
+        >>> history = model.transient(time, start={("z", 0.5): 1.0}, response=("z", 0.5))
+        >>> print((1e3 * history.value[0]).round(3), history.cost.method)
+        [ 0.272  0.001 -0.257 -0.012  0.244] line
+        """
+        return solve_transient(
+            self,
+            time,
+            drive=drive,
+            force=force,
+            response=response,
+            quantity=quantity,
+            start=start,
+            velocity=velocity,
+            method=method,
+            modes=modes,
+            step=step,
+            tolerance=tolerance,
+            spectral_radius=spectral_radius,
+            snapshots=snapshots,
+            progress=progress,
+            partial=partial,
+        )
+
+    @waited
+    def stepped_sine(
+        self,
+        frequency: ArrayLike,
+        *,
+        drive: Point,
+        amplitude: float,
+        response: Point | Sequence[Point] | None = None,
+        branches: bool = False,
+        quantity: str = "receptance",
+        tolerance: float | None = None,
+        progress: Progress = None,
+    ) -> FRF:
+        """Find the steady motion under a sine whose frequency is stepped: that of `frf`.
+
+        Parameters
+        ----------
+        frequency : array_like, shape (f,)
+            [Hz], each > 0, in any order.
+        drive : point, such as ``("z", 0.5)``
+        amplitude : float
+            Of a sine [N, N m].
+        response : point or list of points, optional
+            What is watched; the drive point where left out.
+        branches : False
+            Linear motion has one.
+        quantity : {"receptance", "mobility", "accelerance"}
+            Displacement, velocity or acceleration, per amplitude.
+        tolerance, progress : optional
+            Of `Model.stepped_sine`: nothing is iterated here.
+
+        Returns
+        -------
+        FRF
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a value has no meaning; a `LossFactor`.
+        SolveError
+            If there is no steady state, or a frequency lies on an undamped resonance.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(
+        ...     rd.Axis.arc(1.0, 2.0), 0.5, bending_stiffness=50.0, torsional_stiffness=30.0
+        ... )
+        >>> model = rd.Scene(rope, planes="both").compile()
+        >>> model.stepped_sine([12.0, 15.0], drive=("y", 0.5), amplitude=2.0).stable
+        array([ True,  True])
+        """
+        asked: Any = {"drive": drive, "response": response, "quantity": quantity}
+        asked |= {"amplitude": amplitude, "branches": branches, "tolerance": tolerance}
+        return solve_stepped(self, frequency, progress=progress, **asked)
 
 
 def _only_sweep(scene: Scene, solver: Any) -> None:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ..base import check
 from ..base.answer import Cost
 from ..base.array import Index, Real
 from ..base.computed import Late, computed
-from ..base.errors import SceneError, SolveError
+from ..base.errors import SolveError
 from ..base.unit import FAMILY
 from ..eigen.eigen import check_asked, no_mesh
 from ..eigen.modes import Modes, OnCatenary, UndampedMesh, UndampedVectors
@@ -24,7 +24,8 @@ from ..scene import damping
 from ..scene.scene import Scene
 from .assembly import MOST_PARTS, Assembly, assemble
 from .compile import axis_of, finer_rope
-from .rope import SIX, SpaceRope, unforced
+from .rope import SIX, Factors, SpaceRope, unforced
+from .sensitivity import SpaceSensitivity
 from .spectrum import (
     AT_ONCE,
     BESIDE,
@@ -71,7 +72,7 @@ def solve_modes(
         vectors=Late(partial(vectors_of, shapes)),
         mesh=partial(_mesh, scene, rope, value, frequency),
         hanging=partial(OnCatenary, np.zeros_like(frequency), frequency),
-        solve_shapes=refuse_derivatives,
+        solve_shapes=partial(_again, shapes),
         line=partial(axis_of, scene),
     )
 
@@ -88,11 +89,9 @@ def _mesh(scene: Scene, rope: SpaceRope, eigenvalue: Real, frequency: Real) -> U
     )
 
 
-def refuse_derivatives(points: int | None = None) -> Any:
-    """Refuse what needs derivatives of the core."""
-    raise SceneError(
-        "derivatives and damage are not carried for a rope on an axis: the rope must be straight"
-    )
+def _again(shapes: SpaceShapes, points: int | None = None) -> Any:
+    """Return what derivatives are computed from."""
+    return SpaceSensitivity(shapes)
 
 
 def check_points(rope: SpaceRope, points: int | None) -> None:
@@ -111,6 +110,15 @@ def points_for(rope: SpaceRope, eigenvalue: Real) -> int:
     return int(min(max(least, math.ceil(16 * wave * rope.length.max() / math.pi)), most))
 
 
+class Batch(NamedTuple):
+    """Modes whose vectors are found at once."""
+
+    clusters: list[Index]  # the numbers of those that are found together
+    system: Assembly
+    own: Real  # (clusters, rows, columns) of unit mass, as many columns as the largest cluster
+    lines: tuple[Index, Factors, Real]  # components, factors and scales
+
+
 class SpaceShapes:
     """Shapes of modes at equal parts of each piece, and forms of them."""
 
@@ -119,6 +127,11 @@ class SpaceShapes:
     ) -> None:
         self.scene, self.rope, self.points = scene, rope, points
         self.eigenvalue, self.error, self.component = eigenvalue, found.error, found.component
+
+    def on(self, rope: SpaceRope) -> SpaceShapes:
+        """Return the same modes on the rope with nodes elsewhere."""
+        found = Lowest(self.eigenvalue, self.error, self.component, 0)
+        return SpaceShapes(self.scene, rope, self.eigenvalue, found, 1)
 
     def clusters(self) -> Iterator[Index]:
         """Yield the numbers of modes that are found together."""
@@ -129,13 +142,10 @@ class SpaceShapes:
             yield from np.split(own, np.flatnonzero(np.diff(value) > near[1:] + near[:-1]) + 1)
 
     @computed
-    def solved(self) -> tuple[Real, dict[str, Real]]:
-        """Shapes of unit modal mass (k, nodes, 6), and twice the energies of each."""
-        shape = np.zeros((len(self.eigenvalue), len(self.rope.length) * self.points + 1, 6))
-        variants = self.variants
-        energy = {name: np.zeros(len(self.eigenvalue)) for name in variants}
+    def batches(self) -> list[Batch]:
+        """Vectors of unit mass of modes that are found together, so many clusters at a time."""
         self._refuse_still()
-        every = list(self.clusters())
+        every, found = list(self.clusters()), []
         for first in range(0, len(every), AT_ONCE):
             clusters = every[first : first + AT_ONCE]
             means = np.array([self.eigenvalue[one].mean() for one in clusters])
@@ -146,12 +156,21 @@ class SpaceShapes:
             z = self.rope.scale(which, means)
             factors = unforced(means + beside, STEP)
             system = assemble(self.rope, which, factors, z, equal=self.points)
-            sizes = [len(one) for one in clusters]
-            own = self._found(system, sizes)
+            own = self._found(system, [len(one) for one in clusters])
+            found.append(Batch(clusters, system, own, (which, unforced(means), z)))
+        return found
+
+    @computed
+    def solved(self) -> tuple[Real, dict[str, Real]]:
+        """Shapes of unit modal mass (k, nodes, 6), and twice the energies of each."""
+        shape = np.zeros((len(self.eigenvalue), len(self.rope.length) * self.points + 1, 6))
+        variants = self.variants
+        energy = {name: np.zeros(len(self.eigenvalue)) for name in variants}
+        for clusters, system, own, lines in self.batches:
+            which, _, z = lines
             u, _ = system.apart(own)
             u = z[:, None, :, None] * u[:, system.shown(self.points)]
-            lines = which, unforced(means), z
-            forms = {k: self._form(one, lines, own) for k, one in variants.items()}
+            forms = {k: self.form(one, lines, own) for k, one in variants.items()}
             for k, cluster in enumerate(clusters):
                 moves = self.rope.own[which[k]]
                 shape[cluster[:, None], :, moves] = u[k, :, :, : len(cluster)].transpose(2, 1, 0)
@@ -230,11 +249,15 @@ class SpaceShapes:
             for name, owns in zip(CARRIED, (softer, heavier, losing))
         }
 
-    def _form(self, varied: SpaceRope, lines: Any, own: Real) -> Real:
+    def form(self, varied: SpaceRope, lines: Any, own: Real) -> Real:
         """Return what an imaginary part adds to x^T A x of vectors (n, rows, columns)."""
-        system = assemble(varied, *lines, equal=self.points)
-        form: Real = (own * system.apply(own).imag).sum(1) / STEP
+        form: Real = self.products(varied, lines, own).sum(1)
         return form
+
+    def products(self, varied: SpaceRope, lines: Any, own: Real) -> Real:
+        """Return the products, row by row, that these are sums of."""
+        system = assemble(varied, *lines, equal=self.points)
+        return np.asarray(own * system.apply(own).imag / STEP)
 
     @property
     def kinetic(self) -> Real:

@@ -15,12 +15,13 @@ from ..base.array import Complex, Index, Real
 from ..base.computed import Late, computed
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES, WIRE
-from ..chain.port import Point
+from ..chain.place import moved_end
+from ..chain.port import Point, is_force, moving
 from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ..scene import damping
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.scene import Scene
-from .assembly import Assembly, LoadedFields, assemble, bound
+from .assembly import ROUNDINGS, Assembly, LoadedFields, assemble, bound
 from .compile import finer_rope
 from .rope import SIX, Factors, SpaceRope
 
@@ -28,18 +29,32 @@ AT_ONCE = 128  # That are assembled together.
 
 
 def checked_points(
-    scene: Scene, given: Any, name: str, *, tips: bool = False
+    scene: Scene, given: Any, name: str, *, seen: bool = False
 ) -> tuple[tuple[Point, ...], bool]:
-    """Return one or several points, perhaps tips of wires, and whether a list was given."""
+    """Return one or several points, and whether a list was given.
+
+    What is seen may be internal forces and tips of wires, what drives the motion of ends.
+    """
     several = isinstance(given, (list, tuple)) and len(given) > 0 and not isinstance(given[0], str)
     found = []
     for k, one in enumerate(given if several else (given,)):
         called = f"{name}[{k}]" if several else name
-        if check.is_end(one):
-            raise SceneError(f"{called} must not be the motion of an end on an axis, got {one!r}")
-        own = scene.coordinates, scene.rope.length
-        found.append(check.point(one, called, *own, wires=wires_of(scene) if tips else None))
+        if check.is_end(one) and not seen:
+            found.append(moved_end(scene, one, called))
+            continue
+        own, wires = (scene.coordinates, scene.rope.length), wires_of(scene) if seen else None
+        found.append(check.point(one, called, *own, forces=seen, wires=wires))
     return tuple(found), several
+
+
+def watched(scene: Scene, given: Any, drives: tuple[Point, ...]) -> tuple[Point, ...]:
+    """Return what is watched: the drives where nothing else is said."""
+    if given is not None:
+        return checked_points(scene, given, "response", seen=True)[0]
+    if not drives or any(map(check.is_end, drives)):
+        what = "an end is moved" if drives else "nothing is driven"
+        raise SceneError(f"response must be given where {what}, got None")
+    return drives
 
 
 def wires_of(scene: Scene) -> int:
@@ -48,17 +63,25 @@ def wires_of(scene: Scene) -> int:
 
 
 def solve_frf(
-    scene: Scene, rope: SpaceRope, frequency: Any, *, drive: Any, response: Any, quantity: str
+    scene: Scene,
+    rope: SpaceRope,
+    frequency: Any,
+    *,
+    drive: Any,
+    response: Any,
+    quantity: str,
+    decay: float = 0.0,
 ) -> FRF:
     """Compute the frequency response; see `SpaceModel.frf`."""
     check.one_of(quantity, "quantity", QUANTITIES)
     f = check.frequencies(frequency)
     drives, several = checked_points(scene, drive, "drive")
-    given = response is not None
-    responses = checked_points(scene, response, "response", tips=True)[0] if given else drives
-    asked, answered = Request.of(scene, rope, f, drives, responses), slice(None) if several else 0
+    responses = watched(scene, response, drives)
+    decay = check.number(decay, "decay", "1/s", sign="nonnegative")
+    asked = Request.of(scene, rope, f, drives, responses, decay=decay)
+    answered = slice(None) if several else 0
     receptance = asked.receptance()
-    power = (2j * math.pi * f) ** QUANTITIES[quantity]
+    power = (2j * math.pi * f + decay) ** QUANTITIES[quantity]
     value = (receptance * power)[answered]
 
     def rounding() -> RoundingOfResponse:
@@ -69,7 +92,7 @@ def solve_frf(
         finer = finer_rope(scene, rope)
         if finer is None:
             return MeshOfResponse(np.zeros(value.shape))
-        other = Request.of(scene, finer, f, drives, responses).receptance()
+        other = Request.of(scene, finer, f, drives, responses, decay=decay).receptance()
         size = np.abs(other)
         off = np.abs(receptance - other)
         error = np.divide(off, size, where=size > 0, out=np.where(off > 0, np.inf, 0.0))
@@ -90,11 +113,30 @@ def solve_frf(
         rounding=Late(rounding),
         mesh=mesh,
         solve_rates=_refuse_rates,
+        decay=decay,
     )
 
 
 def _refuse_rates() -> Any:
     raise SceneError("derivatives are not carried for a rope on an axis: the rope must be straight")
+
+
+def _place(rope: SpaceRope, point: tuple[Any, ...]) -> float:
+    """Return where a point is [m]."""
+    if check.is_end(point):
+        return float(rope.x[-point[1]])
+    return float(rope.x[rope.carried[int(point[1])].node] if point[0] == WIRE else point[1])
+
+
+class Ports(NamedTuple):
+    """What points see of motion and force, and its rounding: rows (n, points, width)."""
+
+    node: Index  # (points,) whose motion,
+    motion: Complex
+    motion_doubt: Real
+    part: Index  # (points,) and whose force
+    force: Complex
+    force_doubt: Real
 
 
 class AskedPart(NamedTuple):
@@ -125,26 +167,26 @@ class Request:
         frequency: Real,
         drives: Sequence[Point],
         responses: Sequence[Point],
+        *,
+        decay: float | Real = 0.0,
     ) -> Request:
-        """Cut the rope at the points."""
-        omega = 2 * math.pi * frequency
+        """Cut the rope at the points; motion is e^(s t), s = 2 pi i frequency + decay."""
+        omega = 2 * math.pi * frequency - 1j * decay
         by = damping.factors(scene.dampings, omega).T
         factors = Factors(*by, *np.ones((1, len(omega)), dtype=np.complex128))
         points, both = (tuple(drives), tuple(responses)), len(drives)
-        places = [
-            rope.x[rope.carried[int(at)].node] if c == WIRE else at
-            for c, at in (*drives, *responses)
-        ]
+        places = [_place(rope, point) for point in (*drives, *responses)]
         cut, node = rope.cut(np.array(places), check.NEAR * scene.rope.length)
         return cls(cut, factors, frequency, (node[:both], node[both:]), points)
 
     def receptance(self) -> Complex:
-        """Return motion per unit force, shape (drives, responses, f)."""
+        """Return motion and internal force per unit force or motion, (drives, responses, f)."""
         value = np.zeros(self._shape, dtype=np.complex128)
         for side, lines, system in self._systems():
-            motion = self._solved(system, side, lines, 0).u
-            row, _ = self._rows(system, side, 1)
-            seen = np.einsum("lrc,lrcd->drl", row, motion[:, system.node[side.node[1]]])
+            one, ports = self._solved(system, side, lines, 0), self._ports(system, side, 1)
+            seen = np.einsum("lrc,lrcd->drl", ports.motion, one.u[:, ports.node])
+            if ports.force.any():
+                seen += np.einsum("lrc,lrcd->drl", ports.force, one.f[:, ports.part])
             value[(*side.pairs, lines)] = seen
         return value
 
@@ -153,9 +195,9 @@ class Request:
         limit = np.zeros(self._shape)
         for side, lines, system in self._systems():
             one, other = (self._solved(system, side, lines, i) for i in (0, 1))
-            _, doubt = self._rows(system, side, 1)
-            moved = np.abs(one.u[:, system.node[side.node[1]]])
-            seen = np.einsum("lrc,lrcd->drl", doubt, moved)
+            ports = self._ports(system, side, 1)
+            seen = np.einsum("lrc,lrcd->drl", ports.motion_doubt, np.abs(one.u[:, ports.node]))
+            seen += np.einsum("lrc,lrcd->drl", ports.force_doubt, np.abs(one.f[:, ports.part]))
             limit[(*side.pairs, lines)] = bound(system, one, other).transpose(1, 2, 0) + seen
         return limit
 
@@ -170,7 +212,7 @@ class Request:
         for k, along in enumerate(self.rope.own):
             own = [SIX[c] for c in along]
             # where a wire is, all six are one component
-            at = [[i for i, (c, _) in enumerate(of) if c in (*own, WIRE)] for of in self.point]
+            at = [[i for i, p in enumerate(of) if moving(p) in (*own, WIRE)] for of in self.point]
             if all(at):
                 node = [one[there] for one, there in zip(self.node, at)]
                 point = [[of[i] for i in there] for of, there in zip(self.point, at)]
@@ -187,30 +229,73 @@ class Request:
 
     def _solved(self, system: Assembly, side: AskedPart, lines: slice, end: int) -> LoadedFields:
         """Return motion and force of unit loads on drives (0) or responses (1)."""
-        node, n, f = system.node[side.node[end]], len(system.D), self.frequency[lines]
-        load = np.zeros((n, system.parts + 1, system.width, len(node)), dtype=np.complex128)
-        row, _ = self._rows(system, side, end)
-        load[:, node, :, np.arange(len(node))] = row.swapaxes(0, 1)
-        load[system.held] = 0.0
-        none = np.zeros((n, system.parts, system.width, len(node)))
-        x = system.respond(system.together(load, none))
+        ports, n, f = self._ports(system, side, end), len(system.D), self.frequency[lines]
+        columns = np.arange(len(ports.node))
+        load = np.zeros((n, system.parts + 1, system.width, len(columns)), dtype=np.complex128)
+        slip = np.zeros((n, system.parts, system.width, len(columns)), dtype=np.complex128)
+        load[:, ports.node, :, columns] = ports.motion.swapaxes(0, 1)
+        slip[:, ports.part, :, columns] = ports.force.swapaxes(0, 1)
+        moved = np.zeros_like(load)
+        for k, point in enumerate(side.point[end]):
+            if check.is_end(point):
+                # of a held coordinate that is given, A takes a known part
+                moved[:, :, :, k], load[:, :, :, k] = load[:, :, :, k], 0.0
+        slip[np.broadcast_to(system.absent[:, None], slip.shape[:3])] = 0.0
+        right, apart = load, slip
+        if moved.any():
+            right = load - system.N @ moved
+            right[:, :-1] -= system.Q @ moved[:, :-1]
+            apart = slip - np.diff(moved, axis=1) + system.D @ moved[:, :-1]
+        load[system.held] = right[system.held] = 0.0
+        x = system.respond(system.together(right, apart))
         singular = np.flatnonzero(~np.isfinite(x).all(axis=(1, 2)))
         if len(singular):
             raise SolveError(
                 f"{f[singular[0]]:g} Hz lies on an undamped resonance: there is no finite response"
             )
-        return LoadedFields(*system.apart(x), load)
+        u, force = system.apart(x)
+        return LoadedFields(u + moved, force, load, slip)
 
-    def _rows(self, system: Assembly, side: AskedPart, end: int) -> tuple[Complex, Real]:
-        """Return what points see of their nodes, (n, points, width), and its rounding."""
-        points = side.point[end]
-        row = np.zeros((len(system.z), len(points), system.width), dtype=np.complex128)
-        doubt = np.zeros(row.shape)
-        for k, (coordinate, at) in enumerate(points):
-            if coordinate == WIRE:
-                foot = system.feet[int(at)]
-                row[:, k], doubt[:, k] = foot.seen * system.z, foot.seen_doubt * system.z
+    def _ports(self, system: Assembly, side: AskedPart, end: int) -> Ports:
+        """Return what points see of their nodes and of the part left of them."""
+        points, node = side.point[end], system.node[side.node[end]]
+        motion = np.zeros((len(system.z), len(points), system.width), dtype=np.complex128)
+        ports = Ports(
+            node,
+            motion,
+            np.zeros(motion.shape),
+            np.maximum(node - 1, 0),
+            np.zeros_like(motion),
+            np.zeros(motion.shape),
+        )
+        for k, point in enumerate(points):
+            if point[0] == WIRE:
+                foot = system.feet[int(point[1])]
+                ports.motion[:, k] = foot.seen * system.z
+                ports.motion_doubt[:, k] = foot.seen_doubt * system.z
+                continue
+            along = side.own.index(moving(point))
+            z = system.z[:, along]
+            if is_force(point):
+                self._see_force(system, ports, k, along)
             else:
-                along = side.own.index(coordinate)
-                row[:, k, along] = system.z[:, along]
-        return row, doubt
+                ports.motion[:, k, along] = 1 / z if check.is_end(point) else z
+        return ports
+
+    @staticmethod
+    def _see_force(system: Assembly, ports: Ports, k: int, along: int) -> None:
+        """See what the rope right of a node puts on the part left of it, of the first on the end.
+
+        That is f_a = F^T f_b - Q u_a.
+        """
+        over = 1 / system.z[:, along, None]
+        if ports.node[k] > 0:
+            ports.force[:, k, along] = over[:, 0]
+            return
+        D, Q = system.D[:, 0], system.Q[:, 0]
+        one = np.eye(system.width)[along]
+        ports.force[:, k] = over * (one + D[:, :, along])
+        ports.motion[:, k] = -over * Q[:, along]
+        limit = ROUNDINGS * np.finfo(float).eps * over
+        ports.force_doubt[:, k] = limit * (1 + np.abs(D).max((1, 2))[:, None])
+        ports.motion_doubt[:, k] = limit * np.abs(Q).max((1, 2))[:, None]

@@ -265,7 +265,7 @@ def test_one_plane_leaves_a_straight_wire():
         (lambda: WOUND.frequency, "frequency is that of a straight wire"),
         (lambda: scene_of(WOUND, planes="z"), 'planes must be "both" for a rope with torque'),
         (lambda: scene_of(WOUND, STRAIGHT), "parts.1..lay_length must be given"),
-        (lambda: scene_of(WOUND).family(["tension"]), "wound wires must be left out"),
+        (lambda: rd.plan_measurement(scene_of(WOUND)), "wound wires must be left out"),
         (lambda: scene_of(WOUND).compile(elements=8), "elements must be left out"),
         (lambda: scene_of(changed(WOUND, x=0.0)).compile(), "root of a broken wire must be able"),
     ],

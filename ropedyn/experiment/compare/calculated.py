@@ -17,7 +17,9 @@ from ...eigen.modes import Modes
 from ...eigen.vectors import shapes_at
 from ...model import Model
 from ...response.frf import FRF
+from ...scene.agree import in_space
 from ...signal.likeness import residues
+from ...space.model import SpaceModel
 from ..fitting.natural import natural_of
 from .measured import peaks_in
 
@@ -40,6 +42,11 @@ class CalculatedPeaks:
     def has_shapes(self) -> bool:
         """Whether shapes can be asked for: modes from a file have no model."""
         return self.modes is None or self.modes.solve_shapes is not None
+
+    @property
+    def is_followed(self) -> bool:
+        """Whether modes can be followed while a number changes: on an axis they are not."""
+        return self.modes is not None and self.has_shapes and self.modes.line is None
 
     def checked(self, points: Any, name: str) -> tuple[Point, ...]:
         """Return points that the rope has, each a coordinate at a position."""
@@ -102,12 +109,12 @@ def index(points: tuple[Point, ...], wanted: Point) -> int | None:
 
 
 def calculated_peaks(
-    given: Model | Modes | FRF, highest: float, more: int, least: int, drive: int
+    given: Model | SpaceModel | Modes | FRF, highest: float, more: int, least: int, drive: int
 ) -> CalculatedPeaks:
     """Return the calculated frequencies that measured ones may be."""
     if isinstance(given, FRF):
         found = _of_frf(given, drive)
-    elif isinstance(given, Model):
+    elif isinstance(given, (Model, SpaceModel)):
         found = _with_damping(given, undamped_peaks(given, highest, more, least))
     else:
         found = _of_modes(given)
@@ -120,7 +127,9 @@ MOST = 5000
 """Modes that a comparison looks at."""
 
 
-def undamped_peaks(model: Model, highest: float, more: int, least: int = 0) -> CalculatedPeaks:
+def undamped_peaks(
+    model: Model | SpaceModel, highest: float, more: int, least: int = 0
+) -> CalculatedPeaks:
     """Return the natural frequencies up to the highest measured one, and some more."""
     below = model.count(below=highest)
     if below > MOST:
@@ -129,6 +138,8 @@ def undamped_peaks(model: Model, highest: float, more: int, least: int = 0) -> C
             f"which the scene has {below}: leave it out"
         )
     number = max(below + more, least) + len(model.coordinates) + 1
+    if isinstance(model, SpaceModel):
+        return _of_modes(model.modes(number))
     return _of_modes(solve_modes(model, number, below=None, solver="sweep", strict=False))
 
 
@@ -144,12 +155,14 @@ def _of_modes(modes: Modes) -> CalculatedPeaks:
     )
 
 
-def _with_damping(model: Model, found: CalculatedPeaks) -> CalculatedPeaks:
+def _with_damping(model: Model | SpaceModel, found: CalculatedPeaks) -> CalculatedPeaks:
     """Return natural frequencies and damping ratios of the damped modes, in their order."""
     modes = found.modes
     if modes is None or not modes.damping_ratio.any():
         return found
     try:
+        if isinstance(model, SpaceModel):
+            raise SolveError(f"complex modes are not carried for {in_space(model.scene)}")
         natural = natural_of(model, modes)
     except SolveError as refusal:
         return replace(found, notes=(f"undamped frequencies are compared: {refusal}",))

@@ -46,7 +46,7 @@ def likely_cause(found: CalculatedPeaks, order: Integer, measured: Real, std: Re
     at = order[order > 0] - 1
     spread = np.hypot(std[order > 0], found.error[at])
     known = np.isfinite(spread) & (spread > 0)
-    if found.modes is None or not found.has_shapes or known.sum() < FEWEST:
+    if found.modes is None or not found.is_followed or known.sum() < FEWEST:
         return ""
     at, target = at[known], measured[order > 0][known]
     wanted = np.log(target / found.frequency[at])
@@ -74,7 +74,7 @@ def likely_cause(found: CalculatedPeaks, order: Integer, measured: Real, std: Re
 def tension_alone(found: CalculatedPeaks, order: Integer, measured: Real) -> str:
     """Say which tension would do where no uncertainties are known, with what it would leave."""
     at = order[order > 0] - 1
-    if found.modes is None or not found.has_shapes:
+    if found.modes is None or not found.is_followed:
         return ""
     tracked = Tracked(found.modes, found.number[at])
     wanted = np.log(measured[order > 0] / found.frequency[at])

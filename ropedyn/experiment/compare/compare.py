@@ -24,6 +24,7 @@ from ...eigen.modes import Modes
 from ...model import Model
 from ...response.frf import FRF
 from ...signal.likeness import frac, frac_over, mac, residues
+from ...space.model import SpaceModel
 from .calculated import CalculatedPeaks, calculated_peaks, is_motion
 from .cause import likely_cause, tension_alone
 from .measured import MeasuredPeaks, measured_peaks
@@ -224,7 +225,7 @@ class Comparison(Answer):
 
 
 def compare(
-    calculated: Model | Modes | FRF,
+    calculated: Model | SpaceModel | Modes | FRF,
     measured: Peaks | Measured | Resonances | ArrayLike,
     *,
     within: float | None = None,
@@ -248,7 +249,7 @@ def compare(
 
     Parameters
     ----------
-    calculated : Model, Modes or FRF
+    calculated : Model, SpaceModel, Modes or FRF
         Of a model the modes that are needed are computed, damped ones where the scene damps, whose
         natural frequencies are compared, and the response at the measured lines.
         Of an FRF its peaks count, to the drive of the measurement or else the first one.
@@ -291,7 +292,8 @@ def compare(
     >>> comparison.difference.round(2)
     array([2.  ,  nan, 1.97])
     """
-    check.instance(calculated, "calculated", (Model, Modes, FRF), "a Model, Modes or FRF")
+    kinds = (Model, SpaceModel, Modes, FRF)
+    check.instance(calculated, "calculated", kinds, "a Model, Modes or FRF")
     if within is not None:
         within = check.number(within, "within", sign="positive")
     if band is not None:
@@ -376,7 +378,7 @@ def _alike(
     return [f"{said}; {by_tension}" if by_tension else said]
 
 
-def _slips(calculated: Model | Modes | FRF, peaks: MeasuredPeaks) -> tuple[str, ...]:
+def _slips(calculated: Model | SpaceModel | Modes | FRF, peaks: MeasuredPeaks) -> tuple[str, ...]:
     """Name slips in what was measured."""
     model = calculated if isinstance(calculated, Model) else None
     if peaks.curves is not None:
@@ -387,7 +389,7 @@ def _slips(calculated: Model | Modes | FRF, peaks: MeasuredPeaks) -> tuple[str, 
 
 
 def _responses(
-    calculated: Model | Modes | FRF, measured: Measured | None, band: float | None
+    calculated: Model | SpaceModel | Modes | FRF, measured: Measured | None, band: float | None
 ) -> dict[str, Any]:
     """Return what a comparison says about responses."""
     if measured is None or isinstance(calculated, Modes):

@@ -12,6 +12,7 @@ from ...base.unit import QUANTITIES, place
 from ...curves.measured import Measured
 from ...model import Model
 from ...response.frf import FRF
+from ...space.model import SpaceModel
 from .calculated import index
 
 CLOSE = 0.1  # Frequencies nearer than this part of their mean distance are close to each other.
@@ -64,9 +65,9 @@ def drive_of(calculated: FRF, measured: Measured) -> int:
     return at
 
 
-def calculated_at(calculated: Model | FRF, measured: Measured) -> Complex:
+def calculated_at(calculated: Model | SpaceModel | FRF, measured: Measured) -> Complex:
     """Return the calculated responses as measured: points, lines and quantity."""
-    if isinstance(calculated, Model):
+    if isinstance(calculated, (Model, SpaceModel)):
         return calculated.frf(
             measured.frequency,
             drive=measured.drive[0],

@@ -21,7 +21,7 @@ from ...curves.record.record import Record
 from ...curves.resonance import Resonances
 from ...family.rows import Shared
 from ...response.question import workers_of
-from ...scene.agree import refuse_axis
+from ...scene.agree import in_space
 from ...scene.bench.prior import Prior
 from ...scene.path import with_values
 from ...scene.scene import Scene
@@ -141,11 +141,12 @@ def identify(
         ``"calibration"`` is a real factor of either sign on all of it.
     orders : "auto", None or sequence of int, shape (k,)
         Which mode each peak is, from 1, and 0 where it is none. ``"auto"``: as the peaks say, and
-        where they do not by evidence. None: by evidence in any case.
+        where they do not by evidence. None: by evidence in any case. Of a rope on an axis they are
+        given, counted over both planes as by `SpaceModel.modes`.
     ends : {"unknown", "given"}, optional
         Whether the rotational stiffness of both ends is unknown, from pinned to clamped, and in the
-        intervals, or as the scene says. Unknown where left out if the rope bends and no such
-        stiffness is sought. A whole response takes them as given.
+        intervals, or as the scene says. Unknown where left out if a straight rope bends and no such
+        stiffness is sought. A whole response, and a rope on an axis, take them as given.
     prior : Prior or mapping from str to (float, float), optional
         What is known beforehand: value and std by path, also of what is not sought, whose
         uncertainty then is in the intervals.
@@ -200,11 +201,12 @@ def identify(
     bending_stiffness  2.05243  0.0277407    1.99806   2.1068  trusted
     """
     check.instance(scene, "scene", Scene, "a Scene")
-    refuse_axis(scene, "identification")
     whole = isinstance(measured, Measured)
     sought, calibrated = _calibrated(unknown, whole=whole)
     given = None if whole else _given(measured)
-    if given is not None and scene.planes == "both":
+    if scene.is_spatial:
+        _refuse_on_axis(scene, given, orders)
+    elif given is not None and scene.planes == "both":
         raise SceneError('planes must be "z" of peaks, which do not say their plane, got "both"')
     sought, damping = _damped(sought, given)
     checked = Unknowns.of(_tensed(scene, 1.0), sought)
@@ -237,6 +239,22 @@ def identify(
     fit = RopeTask(_guessed(scene, how, given), how, given, _teller(how), record).fit()
     _warn(fit.notes)
     return fit
+
+
+def _refuse_on_axis(scene: Scene, given: Peaks | list[Peaks] | None, orders: Any) -> None:
+    """Refuse what does not tell the numbers of a rope on an axis."""
+    what = in_space(scene)
+    if given is None:
+        raise SceneError(
+            f"measured must be peaks for {what}, such as Peaks.of(measured), got a whole response: "
+            "derivatives of responses are not carried"
+        )
+    each = given if isinstance(given, list) else [given]
+    if orders is None or (isinstance(orders, str) and any(one.order is None for one in each)):
+        raise SceneError(
+            f"orders must be given for {what}, counted over both planes, or be in the peaks: "
+            f"evidence of them is that of one plane, got {check.shown(orders)}"
+        )
 
 
 def peaks_of_record(record: Record, below: float | None = None) -> Peaks:
@@ -293,10 +311,11 @@ def _calibrated(unknown: Any, *, whole: bool) -> tuple[Any, bool]:
 def _ends(ends: Any, scene: Scene, unknowns: Unknowns, *, whole: bool) -> str:
     """Return whether the ends are unknown; they are where that is not said and acts."""
     sought = any(map(ROTATIONAL.fullmatch, unknowns.at_place))
-    free = "beta" in scene.coordinates and not sought and not whole
+    free = "beta" in scene.coordinates and not (sought or whole or scene.is_spatial)
     ends = (ENDS[0] if free else ENDS[1]) if ends is None else check.one_of(ends, "ends", ENDS)
     if ends == ENDS[0] and not free:
         why = "a whole response" if whole else "ends that are sought" if sought else "a string"
+        why = in_space(scene) if scene.is_spatial else why
         raise SceneError(f'ends must be "given" of {why}, got "unknown"')
     if unknowns.tied and ends == ENDS[0]:
         raise SceneError('ends must be "given" where numbers are tied, got "unknown"')

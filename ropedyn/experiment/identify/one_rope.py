@@ -56,6 +56,11 @@ NO_MODES = (
 
 UNSETTLED = "numbers by frequencies and damping by widths did not settle: they still change"
 
+UNDAMPED = (
+    "damping that is not proportional moves natural frequencies, which is left out: complex modes "
+    "are not carried on an axis"
+)
+
 AMBIGUOUS = (
     "ambiguous: the peaks do not tell which modes they are, see the candidates; a prior of the "
     "tension, sensors that tell shapes (one at 0.15 of the length) or more modes would decide"
@@ -163,6 +168,8 @@ class RopeTask:
         told = self.tell(self.how, self.peaks, orders, self.scene)
         if not is_moved(self.scene):
             return told
+        if self.scene.is_spatial:
+            return replace(told, notes=(*told.notes, UNDAMPED))
         frequency, used = np.asarray(self.peaks.frequency), orders > 0
         shift = np.zeros(len(frequency))
         for _ in range(PASSES):
@@ -371,7 +378,8 @@ class RopeTask:
     def _cross_checks(self, orders: Integer) -> tuple[str, ...]:
         """Say what closed formulas give, of one rope alone."""
         scene = self.scene
-        if scene.parts or scene.gravity is not None or "tension" not in self.how.paths:
+        bent = scene.parts or scene.gravity is not None or scene.is_spatial
+        if bent or "tension" not in self.how.paths:
             return ()
         found = cross_checks(scene.rope, np.asarray(self.peaks.frequency), orders)
         return tuple(

@@ -254,7 +254,7 @@ def _model(
     element: str | None,
 ) -> _Model:
     check.instance(scene, "scene", Scene, "a Scene")
-    refuse_axis(scene, "identification")
+    refuse_axis(scene, "damping by the widths of peaks")
     wanted = [paths] if isinstance(paths, str) else list(paths)
     for path in wanted:
         if isinstance(path, str) and OF_DAMPING.fullmatch(path) is None:

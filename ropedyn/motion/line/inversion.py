@@ -16,11 +16,9 @@ import numpy as np
 from ...base.array import Complex, Real
 from ...base.errors import SceneError, SolveError
 from ...base.unit import MOTIONS
-from ...chain.chain import Chain
 from ...chain.port import Point, is_force
 from ...chain.tip import is_tip
 from ...eigen.damped.rates import Rates
-from ...eigen.spectrum import count_component, spectrum
 from ...response.moved_end import is_end
 from ...scene import damping
 from ...scene.force import Force, Step, is_sampled
@@ -29,8 +27,8 @@ from ..moved import Moved
 from ..request import Run
 from .at_once import LOOKS, at_once, response
 from .force_transform import transform
-from .grid import Grid
-from .transfer import Transfer
+from .grid import LEAST, Grid
+from .transfer import Look
 
 PERIODS = ((1e-6, 1.25, 1e-9), (0.0, 2.0, 1e-11))
 """From this tolerance on the period is so much longer than the record, and this alias is left."""
@@ -44,7 +42,6 @@ ALIAS = 4.0  # A period later motion may be so much larger.
 ROUNDING = 0.5  # Of the error that the sweep bounds, this part, by which rates do not depend,
 ROUNDED = 33  # at so many of the rates that are looked at.
 MOST_NUMBERS = 1 << 22  # Lines times pairs of drives and responses, at most, likewise.
-MOST_LINES = 1 << 19  # At most so many rates are looked at, where times resolve fewer.
 EPS = 16 * np.finfo(float).eps
 FAR = 1e4  # So many times the highest rate no mode of a chain is left: what is infinite there is.
 GROWS = 2.0**0.25  # What grows by this with the rate has no bound
@@ -61,7 +58,8 @@ def invert(run: Run, tolerance: float, kinds: list[str] | None = None) -> Moved:
         if not np.isfinite(moved.value).all():
             raise SolveError("the numbers overflow: check the units and the times")
         is_known = (moved.shares(kinds) <= tolerance).all()
-        if is_known or 2 * line.grid.lines > MOST_LINES or 2 * line.value.size > MOST_NUMBERS:
+        lines, numbers = 2 * line.grid.lines, 2 * line.value.size
+        if is_known or lines > line.transfer.most or numbers > MOST_NUMBERS:
             line.refuse_infinite(moved)
             return moved
         line = line.further()
@@ -72,7 +70,7 @@ class Line:
     """Transfer functions at the rates of a grid."""
 
     run: Run
-    transfer: Transfer
+    transfer: Look
     forces: tuple[Force, ...]
     grid: Grid
     value: Complex  # (drives, responses, lines + 1)
@@ -87,8 +85,8 @@ class Line:
         loads = [Step(-load, time=begin) for load in run.loads.values()]
         forces = (*run.forces, *run.blows, *loads)
         omega = 2 * math.pi * REACH * max((f.bandwidth for f in forces), default=0.0)
-        grid = Grid.over(run.time, longer, decay, growth_of(run), omega)
-        transfer = Transfer(run.model, tuple(run.places), run.responses)
+        transfer = run.look(tuple(run.places), run.responses)
+        grid = Grid.over(run.time, longer, decay, transfer.growth, omega)
         value = transfer.at(grid.s)
         return cls(run, transfer, forces, grid, value, _rounding(transfer, grid.s, value), decay)
 
@@ -147,7 +145,7 @@ class Line:
         if is_end(point) or is_force(point) or is_tip(point):
             return 0.0
         s = self.grid.omega * LOOKS[0] * np.array([1.0, 2.0, FAR, 2 * FAR])
-        value = Transfer(self.run.model, (point,), (point,)).at(s)
+        value = self.run.look((point,), (point,)).at(s)
         near, next_, far, farther = value[0, 0] * s * s
         has_mass = abs(farther) < GROWS * abs(far)
         return float(abs(4 * next_ - near - 3 * far)) / 2 if has_mass else 0.0
@@ -196,7 +194,10 @@ class Line:
             for end in (1.0, *SHARES)
         )
         differ = np.max([np.abs(one - whole) for one in earlier], axis=0)
-        differ = maximum_filter1d(differ, 2 * AROUND * grid.finer + 1, axis=-1)
+        # few times are far apart
+        steps = AROUND * min(1.0, grid.steps / LEAST)
+        around = max(2 * AROUND, math.ceil(steps * grid.finer))
+        differ = maximum_filter1d(differ, 2 * around + 1, axis=-1)
         since = grid.time - grid.begin
         if grid.even:
             even = slice(0, len(since) * grid.finer, grid.finer)
@@ -206,7 +207,7 @@ class Line:
         return grid.summed(ended, since), differ[:, at]
 
 
-def _rounding(transfer: Transfer, s: Complex, value: Complex) -> Real:
+def _rounding(transfer: Look, s: Complex, value: Complex) -> Real:
     """Bound what rounding does to values at many rates by what it does at some of them."""
     at = np.unique(np.linspace(0, len(s) - 1, ROUNDED).astype(np.intp))
     size = np.abs(value)
@@ -237,29 +238,3 @@ def _excited(force: Force, time: Real, omega: float) -> tuple[float, float, floa
     corners = np.concatenate([corners, np.diff(slopes, prepend=0.0)])
     most = jump + omega * blow + TIMES / omega * float(np.sqrt((corners**2).sum()))
     return most, most * omega, most * omega**2
-
-
-def growth_of(run: Run) -> float:
-    """Return how fast motion of the model grows at most [1/s]."""
-    model, growth = run.model, 0.0
-    rates = Rates.of(model.scene.dampings)
-    _refuse_driven(model.chain, rates)
-    gain = float(rates.linear[damping.TENSION].real)
-    for component in model.components:
-        if count_component(model, component, 0.0):
-            value, _ = spectrum(model, component, 1)
-            pushed = max(0.0, -float(value[0]))
-            half = gain * pushed / 2
-            growth = max(growth, half + math.sqrt(half * half + pushed))
-    return growth
-
-
-def _refuse_driven(chain: Chain, rates: Rates) -> None:
-    """Refuse damping that drives, so that nothing bounds how fast motion grows."""
-    section, tension, spring, *_ = rates.linear.real
-    pushes = bool((np.linalg.eigvalsh(chain.stiffness) < 0).any())
-    if spring > 0 and pushes and not section == tension == spring:
-        raise SceneError(
-            "a spring's stiffness must be > 0 beside stiffness damping, which drives where it "
-            'pushes away, got less; method "direct" takes it'
-        )

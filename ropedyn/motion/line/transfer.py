@@ -2,21 +2,42 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
 from ...base.array import Complex, Real
+from ...base.errors import SceneError
 from ...chain import tip
 from ...chain.compiled import Compiled
 from ...chain.port import Point
+from ...eigen.damped.rates import Rates
+from ...eigen.spectrum import count_component, spectrum
 from ...response.harmonic import Receptance, by_components, line_by_line
 from ...response.moved_end import moves_ends
 from ...response.question import Question
 from ...response.solvers import SOLVERS
 from ...scene import damping
+
+
+class Look(Protocol):
+    """What responses are to drives, in the rate s of a motion e^(s t)."""
+
+    most: ClassVar[int]  # rates are looked at, where times resolve fewer
+
+    @property
+    def growth(self) -> float:
+        """How fast motion grows at most [1/s]."""
+
+    def at(self, s: Complex) -> Complex:
+        """Return it, shape (drives, responses, n)."""
+
+    def rounding(self, s: Complex) -> Real:
+        """Return what bounds its rounding, shape (drives, responses, n)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +48,16 @@ class Transfer:
     drives: tuple[Any, ...]  # forces, moments, motion of ends
     responses: tuple[Point, ...]  # motion, internal forces, tips of wires
     workers: int = 1  # threads
+    most: ClassVar[int] = 1 << 19
+
+    @property
+    def growth(self) -> float:
+        """How fast motion grows at most [1/s]."""
+        model, stiffness = self.model, self.model.chain.stiffness
+        pushed = (c for c in model.components if count_component(model, c, 0.0))
+        least = min((float(spectrum(model, c, 1)[0][0]) for c in pushed), default=0.0)
+        pushes = bool((np.linalg.eigvalsh(stiffness) < 0).any())
+        return growth_below(min(least, 0.0), model.scene.dampings, pushes=pushes)
 
     def at(self, s: Complex) -> Complex:
         """Return it, shape (drives, responses, n)."""
@@ -47,3 +78,18 @@ class Transfer:
         whole = Question(self.model, every, hertz, factor, list(self.drives), asked, self.workers)
         solve = partial(line_by_line, solver=moves_ends(SOLVERS["sweep"]))
         return factor, by_components(whole, solve)
+
+
+def growth_below(least: float, dampings: Sequence[damping.Damping], *, pushes: bool) -> float:
+    """Return how fast motion grows at most where no eigenvalue is less [1/s].
+
+    Refuse damping that drives, so that nothing bounds it.
+    """
+    section, tension, spring, *_ = Rates.of(dampings).linear.real
+    if spring > 0 and pushes and not section == tension == spring:
+        raise SceneError(
+            "a spring's stiffness must be > 0 beside stiffness damping, which drives where it "
+            'pushes away, got less; of a straight rope method "direct" takes it'
+        )
+    half = tension * -least / 2
+    return float(half + math.sqrt(half * half - least))
