@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..base.array import Complex, Real
+from ..base.array import Complex, Flags, Real
 from ..base.unit import WIRE
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.parts.part import standing
@@ -101,8 +101,19 @@ def gather_error(
     model: Compiled, responses: Sequence[Point], factor: Complex, value: Complex, error: Real
 ) -> Real:
     """Return the absolute errors of what `gather` returns."""
-    wrong = error + 8 * np.finfo(float).eps * np.abs(value)  # of the row itself
-    return _gathered(model, responses, wrong, lambda tip: np.abs(root_rows(model, tip, factor)[0]))
+    told = _gathered(model, responses, error, lambda tip: np.abs(root_rows(model, tip, factor)[0]))
+    if not any(map(is_tip, responses)):
+        return told
+    wrong = 8 * np.finfo(float).eps * np.abs(value)  # of the row itself
+    rows = _gathered(model, responses, wrong, lambda tip: np.abs(root_rows(model, tip, factor)[0]))
+    tips = np.array([is_tip(point) for point in responses])
+    return told + rows * tips[:, None]
+
+
+def gather_flags(model: Compiled, responses: Sequence[Point], flags: Flags) -> Flags:
+    """Return whether all that `gather` makes an answer of is so."""
+    wrong = _gathered(model, responses, (~flags).astype(float), lambda tip: np.ones(1)[:, None])
+    return np.asarray(wrong == 0)
 
 
 def _gathered(

@@ -61,5 +61,5 @@ def frf_of_row(
     template: Template, frequency: Real, asked: dict[str, Any], row: Real
 ) -> tuple[Complex, Real]:
     """Compute the response of a row."""
-    found = solve_harmonic(template.compiled(row), frequency, threads=1, **asked)
+    found = solve_harmonic(template.compiled(row), frequency, threads=1, tight=False, **asked)
     return found.value, found.rounding_error
