@@ -8,6 +8,8 @@ import numpy as np
 
 from ..base.array import Complex, Index, Real
 from ..scene import damping
+from ..scene.damping import DASHPOT as DRAG
+from ..scene.damping import INERTIA as INERTIA_FACTOR
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.parts.part import standing, stretches
 from ..scene.parts.resonator import Resonator
@@ -29,6 +31,7 @@ from .compile import (
     terms_of,
 )
 from .compiled import Compiled
+from .witness import tip_of_wire
 
 Array = Any  # Of numbers that are wider than a chain's are declared to be.
 Number = np.longdouble
@@ -263,8 +266,8 @@ def _with_structures(scene: Scene, stations: Real, chain: Chain) -> Chain:
     order = sorted(zip(at, range(len(parts))), key=lambda one: one[0])
     values = []
     for _, k in order:
-        mine = carried_by(scene, [(0, parts[k].term())])
-        values += [_structure(parts[k])] * len(mine)
+        count = len(carried_by(scene, [(0, parts[k].term())]))
+        values += [_structure(parts[k])] * count if count else []
     assert len(values) == len(carried)
     assert chain.attached_row is not None
     return chain._replace(
@@ -285,6 +288,17 @@ def _structure(part: Any) -> list[Any]:
     mass = part.density * (PI * d * d / 4) * length
     stiffness = part.youngs_modulus * (PI * d**4 / 64) / length**3
     return [mass, stiffness, length, Number(part.damping_ratio)]
+
+
+def tip_rows(model: Compiled, structure: int, factor: Array, root: list[int]) -> Array | None:
+    """Return the motion of a wire's tip per motion of coordinates of its root, (roots, f)."""
+    wide = wide_of(model)
+    if wide is None:
+        return None
+    assert wide.chain.attached_value is not None
+    assert wide.chain.attached_row is not None
+    tip = tip_of_wire(wide.chain.attached_value[structure], factor[INERTIA_FACTOR], factor[DRAG])
+    return np.einsum("lf,lc->cf", tip, wide.chain.attached_row[structure][:, root])
 
 
 def factors_of(scene: Scene, frequency: Real, decay: float) -> Array:

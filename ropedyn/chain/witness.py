@@ -353,6 +353,16 @@ def foot_of(f: Frame, k: int) -> tuple[Array, Array, Array, Array]:
     return tuple(part.real for part in found)  # type: ignore[return-value]
 
 
+def tip_of_wire(value: Array, inertia: Array, dashpot: Array) -> Array:
+    """Return how a wire's tip moves per displacement and rotation of its foot, (2, f)."""
+    mass, stiffness, length, ratio = value
+    q = -inertia * mass / (stiffness * (1 + 1j * np.where(dashpot == 0, 0, 2 * ratio)))
+    at_tip, grown = krylov(q)
+    at_foot, one = krylov(-4 * q)
+    over = one / grown / ((one + at_foot[0]) / 2)
+    return np.stack([at_tip[0] * over, length * at_tip[1] * over])
+
+
 def feet_at(f: Frame, term: int) -> tuple[Foot | None, Array | None]:
     """Return the structures of a node term, and what of them is no resonance."""
     chain = f.chain
