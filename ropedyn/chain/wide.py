@@ -39,6 +39,9 @@ Number = np.longdouble
 PI = Number("3.141592653589793238462643383279502884197")
 FINE = 32 * float(np.finfo(Number).eps)  # How far wide numbers are moved to see what that does.
 COARSE = 2 * float(np.finfo(float).eps)  # How far those that are known as doubles alone are.
+SEEDS = (1, 2)  # Numbers are moved so many times,
+SURE = 8.0  # and what that does is taken so many times.
+SPARE = 1 / 64  # A wide value's own error is less than this part of what is measured.
 SAME = 1e-12  # Doubles that differ by no more are roundings of the same numbers.
 
 

@@ -61,6 +61,20 @@ class Foot(NamedTuple):
     gap: Array  # (lines, structures)
 
 
+class Loads(NamedTuple):
+    """Forces on nodes, several at once."""
+
+    node: Array  # (pushed,), each once or more often
+    row: Array  # (pushed, width, loads)
+
+    @classmethod
+    def of(cls, ports: Ports) -> Loads:
+        """Return unit loads at ports."""
+        each = np.eye(len(ports.node), dtype=ports.row.dtype)
+        rows = [ports.row[:, k, :, None] * each[:, None, :] for k in range(2)]
+        return cls(np.concatenate([ports.node, ports.node + 1]), np.concatenate(rows))
+
+
 class Fields(NamedTuple):
     """What loads cause at nodes, each (lines, nodes, width, loads)."""
 
@@ -461,7 +475,7 @@ def single(
         yield Station(-1, -1, rows)
 
 
-def respond(chain: Chain, factor: Array, z: Array, loads: Ports, watched: Array) -> Fields | None:
+def respond(chain: Chain, factor: Array, z: Array, loads: Loads, watched: Array) -> Fields | None:
     """Solve for what unit loads cause at nodes; None where that is too much work.
 
     Parameters
@@ -472,12 +486,11 @@ def respond(chain: Chain, factor: Array, z: Array, loads: Ports, watched: Array)
         Real where nothing is damped.
     z : ndarray, shape (width, lines)
         Scales of motion, powers of 2.
-    loads : Ports
+    loads : Loads
     watched : ndarray of int
         Nodes.
     """
-    nodes = [watched, watched + 1, loads.node, loads.node + 1]
-    asked = np.unique(np.concatenate(nodes))
+    asked = np.unique(np.concatenate([watched, loads.node]))
     asked = asked[asked < chain.nodes]
     order = np.argsort(np.abs(factor[INERTIA]), kind="stable")
     width, count = z.shape[0], len(order)
@@ -485,7 +498,7 @@ def respond(chain: Chain, factor: Array, z: Array, loads: Ports, watched: Array)
     most = len(_elimination(chain, factor[:, order[-1:]], z[:, order[-1:]], loads, asked).stations)
     if most * count > MOST_WORK:
         return None
-    step = max(1, AT_ONCE // (4 * width * (5 * width + len(loads.node)) * most))
+    step = max(1, AT_ONCE // (4 * width * (5 * width + loads.row.shape[2]) * most))
     parts = []
     for k in range(0, count, step):
         own = order[k : k + step]
@@ -495,7 +508,7 @@ def respond(chain: Chain, factor: Array, z: Array, loads: Ports, watched: Array)
     return Fields(asked, *joined)
 
 
-def _elimination(chain: Chain, factor: Array, z: Array, loads: Ports, asked: Array) -> Elimination:
+def _elimination(chain: Chain, factor: Array, z: Array, loads: Loads, asked: Array) -> Elimination:
     """Return what solves some lines."""
     middle = z[:, z.shape[1] // 2]
     frame = Frame(chain, chain.names, factor, middle)
@@ -512,10 +525,10 @@ def _elimination(chain: Chain, factor: Array, z: Array, loads: Ports, asked: Arr
 class Elimination:
     """Gauss from station to station: f on the left, u, y of structures and f on the right."""
 
-    def __init__(self, frame: Frame, ratio: Array, loads: Ports, stations: list[Station]) -> None:
+    def __init__(self, frame: Frame, ratio: Array, loads: Loads, stations: list[Station]) -> None:
         self.frame, self.loads, self.stations = frame, loads, stations
         self.r = np.ascontiguousarray(ratio.T)  # (lines, width)
-        self.w, self.d = len(frame.names), len(loads.node)
+        self.w, self.d = len(frame.names), loads.row.shape[2]
         self.dtype = np.result_type(frame.factor, frame.chain.flexibility, frame.z)
         self.memory: dict[int, tuple[Array, Foot | None]] = {}
 
@@ -533,10 +546,7 @@ class Elimination:
 
     def pushed(self, node: int) -> Array:
         """Return the loads on a node, (lines, width, loads)."""
-        push = np.zeros((self.w, self.d), dtype=self.frame.z.dtype)
-        for k in range(2):
-            here = self.loads.node + k == node
-            push[:, here] += self.loads.row[here, k].T
+        push = self.loads.row[self.loads.node == node].sum(axis=0)
         return push * self.frame.z[:, None] * self.r[:, :, None]
 
     def solve(self) -> list[tuple[Array, Array, Array]]:

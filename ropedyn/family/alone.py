@@ -17,7 +17,7 @@ from .template import SPRING, Template
 def modes_of_row(template: Template, number: int, derivative: bool, row: Real) -> tuple[Any, ...]:
     """Find the modes of a row."""
     modes = solve_modes(template.compiled(row), number, below=None, solver="sweep", strict=False)
-    each = [modes.frequency, modes.eigenvalue, modes.rounding_error]
+    each = [modes.frequency, modes.eigenvalue, modes.rounding_bound]
     if derivative:
         each.append(_derivatives(template, modes, row))
     frequency, eigenvalue, error, *slope = (_filled(one, number) for one in each)

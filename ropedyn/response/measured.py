@@ -14,8 +14,8 @@ from ..base.check import is_end
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT
 from ..chain.port import Point, Ports, cut, is_force, is_held, locate, moving, ports, stops
-from ..chain.wide import FINE, Number, as_real, factors_of, moved, narrow, wide_of
-from ..chain.witness import Fields, respond
+from ..chain.wide import FINE, SEEDS, SPARE, SURE, Number, as_real, factors_of, moved, narrow, wide_of
+from ..chain.witness import Fields, Loads, respond
 from ..scene import damping
 from .moved_end import released
 from .question import Question
@@ -24,9 +24,6 @@ from .solvers import inside_elements
 Array = NDArray[Any]
 
 EPS = float(np.finfo(float).eps)
-SEEDS = (1, 2)  # Numbers are moved so many times to see what that does,
-SURE = 8.0  # and what that does is taken so many times.
-SPARE = 1 / 64  # The wide value's own error is less than this part of what is measured.
 
 
 class Measured(NamedTuple):
@@ -85,6 +82,7 @@ def _answers(question: Question) -> list[Array] | None:
     pushed = ports(plain, places, component, question.drives)
     told = ports(plain, places, component, [(moving(p), p[1]) for p in question.responses])
     rough = 16 * EPS if any(locate(x, p[1])[1] is not None for p in points) else 0.0
+    watched = np.concatenate([told.node, told.node + 1])
     factor, local = _factors(question), inside_elements(question)
     scales = _core.scales(plain, np.ascontiguousarray(factor.astype(np.complex128)))
     z = 2.0 ** np.round(np.log2(scales)).astype(Number)
@@ -97,7 +95,7 @@ def _answers(question: Question) -> list[Array] | None:
             rows = [one._replace(row=moved(one.row, rough, random)) for one in rows]
             part = local * (1 + 4 * EPS)
         rows = [one._replace(row=one.row.astype(Number)) for one in rows]
-        fields = respond(own, as_real(factors), z, rows[0], told.node)
+        fields = respond(own, as_real(factors), z, Loads.of(rows[0]), watched)
         if fields is None:
             return None
         answer = _read(question, x, fields, rows[1]) + part
