@@ -134,6 +134,8 @@ PyObject *py_space_respond(PyObject *module, PyObject *arguments);
 PyObject *py_space_apply(PyObject *module, PyObject *arguments);
 PyObject *py_space_iterate(PyObject *module, PyObject *arguments);
 PyObject *py_recurrence(PyObject *module, PyObject *arguments);
+PyObject *py_eliminate(PyObject *module, PyObject *arguments);
+PyObject *py_substitute(PyObject *module, PyObject *arguments);
 PyObject *py_collocate(PyObject *module, PyObject *arguments);
 PyObject *py_volterra(PyObject *module, PyObject *arguments);
 PyObject *py_march_factor(PyObject *module, PyObject *arguments);

@@ -60,6 +60,8 @@ static PyMethodDef methods[] = {
      "space_count(rope, components, eigenvalues, scale) -> counts"},
     {"recurrence", py_recurrence, METH_VARARGS,
      "recurrence(change, seen, length, force, state) -> value, state"},
+    {"eliminate", py_eliminate, METH_VARARGS, "eliminate(A, columns): in place"},
+    {"substitute", py_substitute, METH_VARARGS, "substitute(A, x): in place"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (3, 2, f)"},
     {"pair_slopes", py_pair_slopes, METH_VARARGS,
      "pair_slopes(chain, factor, field, pair, slip) -> slopes, jumps, dyads, places of stretches"},

@@ -241,7 +241,7 @@ class Chain(NamedTuple):
         return self.flexibility.shape[1] > CHANNELS["gamma"]
 
     @property
-    def _names(self) -> list[str]:
+    def names(self) -> list[str]:
         """The coordinates, of one plane as those of z."""
         own = [PLANE[k] for k in self.coordinate]
         if self.is_spatial:  # y stands before z, gamma behind beta
@@ -254,7 +254,7 @@ class Chain(NamedTuple):
         """The plane of z, with x and alpha, and that of y; the chain itself where it is in one."""
         if not self.is_spatial:
             return [Plane(self, slice(None), (slice(None), slice(None)), slice(None))]
-        names, found = self._names, []
+        names, found = self.names, []
         for inside in (False, True):
             own = [c for c in names if (c in ROLE) == inside]
             kept, rows = np.array([names.index(c) for c in own]), self.attached_row
@@ -274,7 +274,7 @@ class Chain(NamedTuple):
     @property
     def parted(self) -> list[tuple[Chain, list[int]]]:
         """Its components with their coordinates, where tension grows; the core takes each alone."""
-        names = self._names
+        names = self.names
         groups = [tuple(names)] if self.rise is None else components(self, names)
         return [(self.only(group), [names.index(c) for c in group]) for group in groups]
 
@@ -297,7 +297,7 @@ class Chain(NamedTuple):
         wanted = [NUMBERS[c] for c in coordinates]
         if wanted == self.coordinate.tolist():
             return self
-        names = self._names
+        names = self.names
         kept = np.array(
             [names.index(c if self.is_spatial else ROLE.get(c, c)) for c in coordinates]
         )

@@ -227,7 +227,7 @@ def _chain(
         _add_lumps(mass, lumped(kind, scene.coordinates, inertia, length), division)
         _add_lumps(damping, halves(kind, along, length), division)
     terms = list(standing_at(scene, stations))
-    stiffness, held, hinge = _terms(scene, terms, mass, damping)
+    stiffness, held, hinge = terms_of(scene, terms, mass, damping)
     chain = Chain(
         kind=kind,
         coordinate=np.array([NUMBERS[c] for c in scene.coordinates], dtype=np.int32),
@@ -314,7 +314,7 @@ def carried_by(
     return carried
 
 
-def _terms(
+def terms_of(
     scene: Scene,
     terms: Iterable[tuple[int, NodeTerm]],
     mass: Real,
@@ -322,7 +322,7 @@ def _terms(
 ) -> tuple[Real, NDArray[np.uint8], Real | None]:
     """Add masses and dashpots of parts to those of the distinct node terms, stations first."""
     width = len(scene.coordinates)
-    stiffness = np.zeros(mass.shape)
+    stiffness = np.zeros_like(mass)
     held = np.zeros((len(mass), width), dtype=np.uint8)
     hinge = None
     number = {c: k for k, c in enumerate(scene.coordinates)}
@@ -337,7 +337,7 @@ def _terms(
             if coordinate in number:
                 held[station, number[coordinate]] = 1
         for coordinate, compliance in term.hinge.items():
-            hinge = np.zeros((len(mass), width)) if hinge is None else hinge
+            hinge = np.zeros((len(mass), width), dtype=mass.dtype) if hinge is None else hinge
             hinge[station, number[coordinate]] += compliance
     return stiffness, held, hinge
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..base.array import Complex, Real
+from ..base.array import Complex, Flags, Real
 from ..base.unit import WIRE
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.parts.part import standing
@@ -17,6 +17,7 @@ from .chain import ATTACHED
 from .compiled import Compiled
 from .port import Point, locate
 from .rate import Weights
+from .wide import tip_rows
 
 
 class Tip(NamedTuple):
@@ -24,6 +25,9 @@ class Tip(NamedTuple):
 
     structure: int  # of the model's chain
     root: list[Point]  # the coordinates that move its root
+
+
+EPS = float(np.finfo(float).eps)
 
 
 def is_tip(point: Point) -> bool:
@@ -101,8 +105,31 @@ def gather_error(
     model: Compiled, responses: Sequence[Point], factor: Complex, value: Complex, error: Real
 ) -> Real:
     """Return the absolute errors of what `gather` returns."""
-    wrong = error + 8 * np.finfo(float).eps * np.abs(value)  # of the row itself
-    return _gathered(model, responses, wrong, lambda tip: np.abs(root_rows(model, tip, factor)[0]))
+    told = _gathered(model, responses, error, lambda tip: np.abs(root_rows(model, tip, factor)[0]))
+    if not any(map(is_tip, responses)):
+        return told
+    size = np.abs(value)
+    rows = _gathered(model, responses, size, lambda tip: _row_error(model, tip, factor))
+    tips = np.array([is_tip(point) for point in responses])
+    return told + rows * tips[:, None]
+
+
+def _row_error(model: Compiled, tip: Tip, factor: Complex) -> Real:
+    """Return the absolute error of the motion of a tip per motion of its root, (roots, f)."""
+    row = root_rows(model, tip, factor)[0]
+    kept = [model.coordinates.index(c) for c, _ in tip.root]
+    # factors are numbers that a frequency rounds to
+    wide = [tip_rows(model, tip.structure, factor * more, kept) for more in (1, 1 + 4 * EPS)]
+    if wide[0] is None or wide[1] is None:
+        return 8 * EPS * np.abs(row)
+    off = np.abs(row - wide[0]) + np.abs(wide[1] - wide[0])
+    return np.asarray(off.astype(float) + 2 * EPS * np.abs(row))
+
+
+def gather_flags(model: Compiled, responses: Sequence[Point], flags: Flags) -> Flags:
+    """Return whether all that `gather` makes an answer of is so."""
+    wrong = _gathered(model, responses, (~flags).astype(float), lambda tip: np.ones(1)[:, None])
+    return np.asarray(wrong == 0)
 
 
 def _gathered(

@@ -21,6 +21,7 @@ from ..chain.compiled import Compiled
 from ..scene.scene import Scene
 from .catenary import on_catenary
 from .fewest import solve_components
+from .measured import rounding_of
 from .modes import Modes, UndampedMesh, UndampedVectors
 from .spectrum import (
     SOLVERS,
@@ -81,7 +82,8 @@ def solve_modes(
         frequency=frequency,
         eigenvalue=eigenvalue,
         growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
-        rounding_error=error_in_hertz(eigenvalue, error),
+        rounding_error=partial(rounding_of, model, which, eigenvalue, error),
+        rounding_bound=error_in_hertz(eigenvalue, error),
         plane=partial(_planes, model, which),
         cost=_cost(model, solver, found),
         vectors=later if solver == "sweep" else vectors_of(model, found, eigenvalue, order),

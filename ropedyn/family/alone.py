@@ -17,7 +17,7 @@ from .template import SPRING, Template
 def modes_of_row(template: Template, number: int, derivative: bool, row: Real) -> tuple[Any, ...]:
     """Find the modes of a row."""
     modes = _modes(template, number, row)
-    each = [modes.frequency, modes.eigenvalue, modes.rounding_error]
+    each = [modes.frequency, modes.eigenvalue, modes.rounding_bound]
     if derivative:
         each.append(_derivatives(template, modes, row))
     frequency, eigenvalue, error, *slope = (_filled(one, number) for one in each)
@@ -72,5 +72,5 @@ def frf_of_row(
     if template.scene.is_spatial:
         found = template.spatial(row).frf(frequency, **asked)
     else:
-        found = solve_harmonic(template.compiled(row), frequency, threads=1, **asked)
+        found = solve_harmonic(template.compiled(row), frequency, threads=1, tight=False, **asked)
     return found.value, found.rounding_error

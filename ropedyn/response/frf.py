@@ -45,16 +45,21 @@ class RoundingOfResponse(Frozen):
 
     rounding_error: Real = field(metadata=axes("drive", "response", "frequency"))
     rounding_limit: Real = field(metadata=axes("drive", "response", "frequency"))
+    rounding_measured: Flags = field(metadata=axes("drive", "response", "frequency"))
 
     @classmethod
-    def of(cls, value: Complex, limit: Real) -> RoundingOfResponse:
-        """Return what an absolute bound says."""
-        return cls(relative(value, limit), limit)
+    def of(
+        cls, value: Complex, limit: Real, was_measured: Flags | bool = False
+    ) -> RoundingOfResponse:
+        """Return what an absolute error says."""
+        flags: Flags = np.broadcast_to(was_measured, value.shape).copy()
+        return cls(relative(value, limit), limit, flags)
 
     @classmethod
     def of_relative(cls, value: Complex, error: Real) -> RoundingOfResponse:
         """Return what a relative bound says."""
-        return cls(error, error * np.maximum(np.abs(value), TINY))
+        limit = error * np.maximum(np.abs(value), TINY)
+        return cls(error, limit, np.zeros(value.shape, dtype=np.bool_))
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +81,16 @@ class FRF(Curves):
         [m/N, rad/N, m/(N m), rad/(N m), of internal forces N/N and so on, per motion of an end
         m/m, rad/m and so on; and these per s or s^2].
     rounding_error : ndarray, as value
-        Bound of the relative error that rounding causes, to first order, computed when it is first
-        asked for; infinite where only the value is 0.
+        Bound of the relative error that rounding causes, computed when it is first asked for;
+        infinite where only the value is 0.
     rounding_limit : ndarray, as value
         The same of the absolute error, in the unit of the value.
+    rounding_measured : ndarray of bool, as value
+        True where that is the distance to the same response in wider numbers, with their own
+        error, which takes some hundred times as long as the response; else it is a bound to first
+        order, which is some hundred times the error: where the tension grows along the rope, of
+        `ModalDamping`, on a resonance that takes no part, and of questions too long for wider
+        numbers.
     mesh_error : ndarray, as value
         Relative error that the elements cause, computed when it is first asked for. Not an
         estimate: the distance to the response of the continuous spans of the same scene, and the
@@ -115,6 +126,7 @@ class FRF(Curves):
 
     rounding_error = Read[Real]("rounding", "Bound of the relative error of rounding, as value.")
     rounding_limit = Read[Real]("rounding", "Bound of the error of rounding, as value.")
+    rounding_measured = Read[Flags]("rounding", "Whether that was measured, as value.")
     mesh_error = Read[Real]("mesh", "Relative error that the elements cause, as value.")
 
     @computed
@@ -131,8 +143,12 @@ class FRF(Curves):
         """Return the same response as another quantity; see `Curves.to`."""
         found = super().to(quantity)
         times = np.abs(self.s) ** (QUANTITIES[quantity] - QUANTITIES[self.quantity])
-        of = RoundingOfResponse.of
-        return changed(found, rounding=Late(lambda: of(found.value, self.rounding_limit * times)))
+
+        def rounding() -> RoundingOfResponse:
+            limit = self.rounding_limit * times
+            return RoundingOfResponse.of(found.value, limit, self.rounding_measured)
+
+        return changed(found, rounding=Late(rounding))
 
     def derivative(self, path: str) -> Complex:
         """Find the derivative of the response with respect to a number of the scene.

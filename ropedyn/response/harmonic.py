@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..base import check
 from ..base.answer import Cost
-from ..base.array import Complex, Real
+from ..base.array import Complex, Flags, Real
 from ..base.computed import Late
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES
@@ -26,6 +26,7 @@ from ..scene.scene import Scene
 from .at_node import answers_at_nodes
 from .frf import FRF, MeshOfResponse, RoundingOfResponse
 from .frf_rate import Answered, FrequencyRates
+from .measured import measured
 from .modal_sum import Summed, modal_sum, refuse_other_damping
 from .moved_end import gathered, moves_ends
 from .question import Bound, Question, Solver, angular, workers_of
@@ -43,8 +44,9 @@ def solve_harmonic(
     solver: str = "sweep",
     threads: int | None = None,
     decay: float = 0.0,
+    tight: bool = True,
 ) -> FRF:
-    """Compute the frequency response; see `Model.frf`."""
+    """Compute the frequency response; see `Model.frf`. Its rounding is bounded unless `tight`."""
     solve = answers_at_nodes(moves_ends(SOLVERS[check.one_of(solver, "solver", SOLVERS)]))
     if model.element == "continuous" and solver != "sweep":
         raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
@@ -69,8 +71,10 @@ def solve_harmonic(
     value = (value * power if QUANTITIES[quantity] else value)[drive]
 
     def rounding() -> RoundingOfResponse:
-        error = tip.gather_error(model, responses, factor, got.value, got.error())
-        return RoundingOfResponse.of(value, error[drive] * np.abs(power))
+        error, certain = got.error() if tight else (got.bound(), np.zeros(got.value.shape, bool))
+        error = tip.gather_error(model, responses, factor, got.value, error)
+        certain = tip.gather_flags(model, responses, certain)
+        return RoundingOfResponse.of(value, error[drive] * np.abs(power), certain[drive])
 
     mesh: MeshOfResponse | Callable[[], MeshOfResponse]
     mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)
@@ -110,9 +114,24 @@ class Receptance(NamedTuple):
     lines: int  # that were solved
     answered: list[Answered]
 
-    def error(self) -> Real:
+    def bound(self) -> Real:
         """Bound what rounding does, as value."""
         return gathered(self.value.shape, self.bounds)
+
+    def error(self) -> tuple[Real, Flags]:
+        """Measure what rounding did, as value, or bound it; and where it was measured."""
+        error, certain = np.zeros(self.value.shape), np.ones(self.value.shape, dtype=np.bool_)
+        for (block, bound), answered in zip(self.bounds, self.answered):
+            question, found = answered.question, None
+            if answered.parts is None:
+                found = measured(question, self.value[block])
+            if found is None:
+                error[block], certain[block] = bound(), False
+                continue
+            error[block], certain[block] = found.error, found.certain
+            if not found.certain.all():
+                error[block] = np.where(found.certain, found.error, bound())
+        return error, certain
 
 
 def by_components(whole: Question, answer: Callable[[Question], Summed]) -> Receptance:
@@ -166,7 +185,7 @@ def mesh_of_frf(
     """Compare the response of a chain with that of continuous spans."""
     try:
         ask = partial(solve_harmonic, compile_scene(scene), drive=drives, response=responses)
-        ask = partial(ask, quantity=quantity, decay=decay)
+        ask = partial(ask, quantity=quantity, decay=decay, tight=False)
         true, uncertain = _response(ask, frequency, (len(drives), len(responses)))
     except SceneError:
         return MeshOfResponse(np.full(value.shape, np.inf))

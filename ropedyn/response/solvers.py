@@ -69,7 +69,7 @@ def _bound(question: Question, value: Complex) -> Real:
     if reactions:
         error = _reacting(question, error, sign=1.0)
     _hold(question, error)
-    return error + 2 * EPS * (np.abs(value) + np.abs(_local(question)))
+    return error + 2 * EPS * (np.abs(value) + np.abs(inside_elements(question)))
 
 
 def _band(question: Question) -> tuple[Complex, Bound]:
@@ -116,7 +116,7 @@ def _unassembled(
     value.imag[..., ~question.is_damped] = 0.0  # only rounding is there
     _hold(question, value)
     _hold(question, error)
-    value += _local(question)
+    value += inside_elements(question)
     return value, error
 
 
@@ -197,11 +197,11 @@ def _lapack(question: Question) -> tuple[Complex, Bound]:
         raise question.resonance(first, more)
     value = np.ascontiguousarray(value.transpose(1, 2, 0))
     error = np.ascontiguousarray(rounding.transpose(1, 2, 0))
-    value += _local(question)
+    value += inside_elements(question)
     return value, lambda: error
 
 
-def _local(question: Question) -> Complex:
+def inside_elements(question: Question) -> Complex:
     """Return the flexibility inside driven elements that are not cut, as the response."""
     shape = len(question.drives), len(question.responses), len(question.frequency)
     value = np.zeros(shape, dtype=np.complex128)

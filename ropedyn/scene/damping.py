@@ -302,9 +302,10 @@ KINDS = (
 
 def factors(dampings: Sequence[Damping], omega: NDArray[Any]) -> Complex:
     """Return the factors of a sum of dampings."""
-    total = np.ones((len(PARTS), *omega.shape), dtype=np.complex128)
+    turn = 1j * omega
+    total = np.ones((len(PARTS), *omega.shape), dtype=turn.dtype)
     total[INERTIA] = -(omega**2)
-    total[DASHPOT] = turn = 1j * omega
+    total[DASHPOT] = turn
     for term in (damping.term() for damping in dampings):
         for part, rate in term.rate.items():
             total[part] += turn * rate

@@ -67,6 +67,7 @@ def solve_modes(
         eigenvalue=value,
         growth=np.sqrt(np.maximum(-value, 0.0)),
         rounding_error=error_in_hertz(value, found.error),
+        rounding_bound=error_in_hertz(value, found.error),
         plane=Late(lambda: shapes.plane),
         cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=found.counts),
         vectors=Late(partial(vectors_of, shapes)),

@@ -7,6 +7,7 @@ from pathlib import Path
 
 FLOORS = [
     "base",
+    "wide",
     "closed",
     "element",
     "chain",

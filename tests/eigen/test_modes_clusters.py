@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from conftest import BENDING, LENGTH, MASS, beam
-from exact_counts import ExactChain, certified_modes, is_bounded
+from exact_counts import ExactChain, certified_modes, exact_chain, is_bounded
 
 import ropedyn as rd
 
@@ -113,7 +113,7 @@ def test_many_modes_in_a_cluster_are_right(masses, element):
     modes = model.modes(3 * masses + 1, solver="sweep")
     assert modes.certified
     # counts, which widen the bound where they do not agree, know these to 1e-9
-    exact = ExactChain(model.chain, 80)
+    exact = exact_chain(model, 80)
     assert is_bounded(exact, modes).all()
     # the quotients themselves: 1e3 eps of frequencies 2 pi times lower than stiff waves
     error = [exact.error(k, modes.eigenvalue[k]) for k in range(2 * masses, 3 * masses + 1)]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from conftest import BENDING, EPS, LENGTH, beam
-from exact_counts import ExactChain, eigenvalue_bound, is_bounded
+from exact_counts import ExactChain, eigenvalue_bound, exact_chain, is_bounded
 
 import ropedyn as rd
 
@@ -38,7 +38,7 @@ def checked(model, number):
     """Return certified modes that are as near the exact ones as they say."""
     modes = model.modes(number, solver="sweep")
     assert modes.certified
-    exact = ExactChain(model.chain, 80)
+    exact = exact_chain(model, 80)
     assert is_bounded(exact, modes).all()
     return exact, modes
 

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from exact_counts import ExactChain, eigenvalue_bound, is_bounded
+from exact_counts import ExactChain, eigenvalue_bound, exact_chain, is_bounded
 from exact_scene import places
 from random_scene import random_scene
 
@@ -68,7 +68,7 @@ def take(seeds):
             continue
         if modes is None:
             continue
-        exact = ExactChain(model.chain, 80)
+        exact = exact_chain(model, 80)
         sample.modes += len(modes.frequency)
         if not modes.certified:
             sample.uncertified.append(seed)

@@ -11,6 +11,8 @@ import mpmath
 import numpy as np
 from mpmath import mpf
 
+from ropedyn.chain.wide import wide_of
+
 DIGITS = 60
 DIFFERENCE, RIGID, TENSED = range(3)
 X, Z, ALPHA, BETA = range(4)
@@ -38,8 +40,8 @@ def shape_functions(kind, theta):
 def triple(chain, e):
     """Return F, G, Q of distinct element `e` as mpmath matrices (width, width)."""
     w = len(chain.coordinate)
-    length, tension = mpf(float(chain.length[e])), mpf(float(chain.tension[e]))
-    S = [[mpf(float(s)) for s in row] for row in chain.flexibility[e]]
+    length, tension = _exact(chain.length[e]), _exact(chain.tension[e])
+    S = [[_exact(s) for s in row] for row in chain.flexibility[e]]
     coordinate = [int(c) for c in chain.coordinate]
     F, G, Q = mpmath.eye(w), mpmath.zeros(w), mpmath.zeros(w)
     if BETA not in coordinate:
@@ -115,7 +117,7 @@ class ExactChain:
                 _decimals(mass),
                 _decimals(stiffness),
                 [k for k, h in enumerate(held) if not h],
-                {k: Decimal(1) / Decimal(float(c)) for k, c in enumerate(hinge) if c > 0},
+                {k: Decimal(1) / _decimal(c) for k, c in enumerate(hinge) if c > 0},
             )
             for mass, stiffness, held, hinge in zip(chain.mass, chain.stiffness, chain.held, hinges)
         ]
@@ -239,14 +241,33 @@ def _eliminate(A, unknowns, others):
     return count
 
 
+def _parts(x):
+    """A number as doubles that add up to it: one of a double, two of a wider one."""
+    return [float(x), float(x - type(x)(float(x)))] if np.isfinite(x) else [float(x)]
+
+
+def _exact(x):
+    return mpmath.fsum(map(mpf, _parts(x)))
+
+
+def _decimal(x):
+    return sum(map(Decimal, _parts(x)))
+
+
 def _decimals(matrix, digits=None):
     """Return rows as Decimal: floats exactly, mpf to so many digits."""
     if digits is None:
-        return [[Decimal(float(x)) for x in row] for row in matrix]
+        return [[_decimal(x) for x in row] for row in matrix]
     return [[Decimal(mpmath.nstr(x, digits + 5)) for x in row] for row in matrix]
 
 
 # modes ------------------------------------------------------------------------------------------
+
+
+def exact_chain(model, digits=DIGITS):
+    """The chain of a model in the wider numbers that its scene says, as far as there are any."""
+    wide = wide_of(model)
+    return ExactChain(model.chain if wide is None else wide.chain, digits)
 
 
 def eigenvalue_bound(modes):
@@ -268,7 +289,7 @@ def certified_modes(model, number, relative=2e-12):
     """
     modes = model.modes(number, solver="sweep")
     assert modes.certified
-    assert is_bounded(ExactChain(model.chain, 80), modes).all()
+    assert is_bounded(exact_chain(model, 80), modes).all()
     size = np.abs(modes.eigenvalue)
     assert (eigenvalue_bound(modes) <= relative * size + 2.0**-53 * size.max()).all()
     return modes

@@ -20,9 +20,11 @@ from ...chain.chain import Chain, plane_of
 from ...chain.compile import check_points, compile_scene, finer
 from ...chain.compiled import Compiled
 from ...chain.lean import lean
+from ...scene.damping import factors as damping_factors
 from ...scene.damping import having
 from ..eigen import check_asked
 from ..free_motion import MeshOfModes, Vectors
+from ..measured import Asked, measured
 from ..spectrum import lowest
 from ..vectors import UNSEEN, fractions, largest, points_for, within
 from .attached_energy import AttachedEnergy
@@ -93,7 +95,8 @@ def solve_damped(
         searched=min(answer.radius, limit) / (2 * math.pi),
         x=x,
         eigenvalue=value,
-        rounding_error=answer.error / (2 * math.pi),
+        rounding_error=partial(_rounding, model, answer),
+        rounding_bound=answer.error / (2 * math.pi),
         plane=np.array([plane_of(answer.parts[k][0]) for k in answer.which], dtype=np.str_),
         cost=Cost(solver, len(model.x) - 1, model.size, answer.sweeps),
         vectors=partial(_vectors, model, answer, finest),
@@ -237,6 +240,24 @@ def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real]:
     real = chain.undamped.energy(np.ascontiguousarray(shape.real), eigenvalue)
     imag = chain.undamped.energy(np.ascontiguousarray(shape.imag), eigenvalue)
     return real[0] + imag[0], real[1] + imag[1]
+
+
+def _rounding(model: Compiled, answer: DampedRates) -> Real:
+    """Return the error of s/2 pi by rounding, the bound of it where wider numbers do not tell."""
+    found, dampings = answer.error.copy(), model.scene.dampings
+    own = np.array([answer.parts[k][0] for k in answer.which], dtype=object)
+    for component in model.components:
+        mine = np.array([tuple(one) == component for one in own], dtype=np.bool_)
+        asked = Asked(
+            answer.value[mine],
+            answer.error[mine],
+            lambda s: damping_factors(dampings, -1j * s).T,
+        )
+        told = measured(model, component, asked)
+        found[mine] = np.where(np.isnan(told), answer.error[mine], told)
+    found /= 2 * math.pi
+    found.setflags(write=False)
+    return found
 
 
 def _mesh(model: Compiled, answer: DampedRates) -> MeshOfModes:

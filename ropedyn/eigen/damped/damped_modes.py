@@ -51,7 +51,9 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]
     decay_rate : ndarray, shape (k,)
         -Re s [1/s].
     rounding_error : ndarray, shape (k,)
-        Estimated absolute error of s/2 pi that rounding causes [Hz].
+        Absolute error of s/2 pi that rounding causes [Hz], measured when it is read; see `Modes`.
+    rounding_bound : ndarray, shape (k,)
+        A bound of that, known at once [Hz].
     mesh_error : ndarray, shape (k,)
         Absolute error of s/2 pi that the elements cause [Hz]: the distance to the damped mode of
         the continuous spans it is matched with, and the rounding error of that. 0 for continuous
@@ -96,7 +98,8 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]
     searched: float
     x: Lazy[Real] = lazy(np.ndarray, axes("node", unit="m"))
     eigenvalue: Complex = field(metadata=axes("mode", unit="rad/s"))
-    rounding_error: Real = field(metadata=axes("mode", unit="Hz"))
+    rounding_error: Lazy[Real] = lazy(np.ndarray, axes("mode", unit="Hz"))
+    rounding_bound: Real = field(metadata=axes("mode", unit="Hz"))
     plane: Lazy[NDArray[np.str_]] = lazy(np.ndarray, axes("mode"))
     cost: Cost
     vectors: Lazy[Vectors[np.complex128]] = lazy(Vectors)

@@ -85,7 +85,8 @@ def _answer(
         searched=searched / (2 * math.pi),
         x=undamped.x,
         eigenvalue=value,
-        rounding_error=undamped.rounding_error[mode] * scale,
+        rounding_error=partial(_rounding, undamped, mode, scale),
+        rounding_bound=undamped.rounding_bound[mode] * scale,
         plane=undamped.plane[mode],
         cost=replace(undamped.cost),
         vectors=partial(_vectors, undamped, mode, value, (ratio * omega)[mode]),
@@ -103,6 +104,12 @@ def _vectors(undamped: Modes, mode: Index, value: Complex, decay: Real) -> Vecto
         shape=undamped.shape[mode].astype(np.complex128),
         energy={name: part[mode] for name, part in undamped.energy.items()},
     )
+
+
+def _rounding(undamped: Modes, mode: Index, scale: Real) -> Real:
+    error = undamped.rounding_error[mode] * scale
+    error.setflags(write=False)
+    return error
 
 
 def _mesh(undamped: Modes, mode: Index, scale: Real) -> MeshOfModes:

@@ -25,13 +25,13 @@ class Natural(NamedTuple):
 
     frequency: Real  # |s|/2 pi [Hz]
     damping_ratio: Real
-    rounding_error: Real  # [Hz]
+    rounding_error: Real  # bound of it [Hz]
 
 
 def natural_of(model: Compiled, modes: Modes) -> Natural:
     """Return what damping makes of undamped modes; of those that oscillate no more, nothing."""
     # of each component the k-th that oscillates is the k-th undamped one
-    found = Natural(modes.frequency.copy(), modes.damping_ratio.copy(), modes.rounding_error.copy())
+    found = Natural(modes.frequency.copy(), modes.damping_ratio.copy(), modes.rounding_bound.copy())
     if not modes.damping_ratio.any():
         return found
     damped = solve_damped(model, len(modes.frequency), below=None, solver="sweep", points=None)
@@ -44,7 +44,7 @@ def natural_of(model: Compiled, modes: Modes) -> Natural:
         mine, of = mine[:both], of[:both]
         found.frequency[mine] = damped.natural_frequency[of]
         found.damping_ratio[mine] = damped.damping_ratio[of]
-        found.rounding_error[mine] += damped.rounding_error[of]
+        found.rounding_error[mine] += damped.rounding_bound[of]
     return found
 
 

@@ -67,7 +67,7 @@ class Transfer:
     def rounding(self, s: Complex) -> Real:
         """Return what bounds its rounding, shape (drives, responses, n)."""
         factor, got = self._solved(s)
-        return tip.gather_error(self.model, self.responses, factor, got.value, got.error())
+        return tip.gather_error(self.model, self.responses, factor, got.value, got.bound())
 
     def _solved(self, s: Complex) -> tuple[Complex, Receptance]:
         """Return the factors of the parts of a model, and what they make responses."""

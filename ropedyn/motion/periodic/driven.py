@@ -83,9 +83,8 @@ class Driven:
         return self._holding(found.value.transpose(2, 1, 0)), known_to(found)
 
     def _asked(self, frequency: Real, drives: list[Point], responses: list[Point]) -> FRF:
-        return solve_harmonic(
-            self.asked.model, frequency, drive=drives, response=responses, threads=1
-        )
+        asked = {"drive": drives, "response": responses, "threads": 1, "tight": False}
+        return solve_harmonic(self.asked.model, frequency, **asked)
 
     def _holding(self, H: Complex) -> Complex:
         """Hold what friction holds: (f, points and held, points, held and drive) to fewer."""

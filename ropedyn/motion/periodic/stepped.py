@@ -70,9 +70,8 @@ def _linear(asked: SteppedSine, driven: Driven) -> FRF:
     if driven.growing:
         raise SolveError("there is no steady state: the compression is beyond critical")
     f = asked.frequency
-    solve = partial(
-        solve_harmonic, asked.model, drive=asked.drive, response=asked.responses, threads=1
-    )
+    solve = partial(solve_harmonic, asked.model, drive=asked.drive, response=asked.responses)
+    solve = partial(solve, threads=1, tight=False)
 
     def ask(omega: Real) -> tuple[Complex, Real]:
         found = solve(omega / (2 * np.pi))
