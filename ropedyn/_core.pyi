@@ -62,6 +62,7 @@ def damped(
     chain: Chain,
     constant: _Complex,
     linear: _Complex,
+    middle: float,
     radius: float,
     edge: float,
     horizon: float,

@@ -249,11 +249,12 @@ static void complete(struct rd_iterate *it, enum rd_mirror mirror)
 }
 
 /* roots inside the circle, to `known` */
-static size_t inside(const struct rd_iterate *it, double radius, double _Complex *known)
+static size_t inside(const struct rd_iterate *it, const struct rd_winding *within,
+                     double _Complex *known)
 {
     size_t count = 0;
     for (size_t i = 0; i < it->count; i++)
-        if (cabs(it->z[i]) < radius)
+        if (cabs(it->z[i] - within->middle) < within->radius)
             known[count++] = it->z[i];
     return count;
 }
@@ -269,16 +270,16 @@ static size_t guess_missing(struct rd_iterate *it, const struct rd_winding *with
     if (rd_powers_invert(missing, moment, it->next) != RD_OK)
         return 0;
     for (size_t k = 0; k < missing; k++)
-        it->next[k] *= within->radius;
+        it->next[k] = within->middle + within->radius * it->next[k];
     return missing;
 }
 
-static size_t take_guesses(struct rd_iterate *it, double radius, size_t missing, size_t guesses,
-                           const double _Complex *guess)
+static size_t take_guesses(struct rd_iterate *it, const struct rd_winding *within, size_t missing,
+                           size_t guesses, const double _Complex *guess)
 {
     size_t count = 0;
     for (size_t k = 0; k < guesses && count < missing; k++)
-        if (cabs(guess[k]) < radius)
+        if (cabs(guess[k] - within->middle) < within->radius)
             it->next[count++] = guess[k];
     return count;
 }
@@ -291,16 +292,17 @@ enum rd_status rd_iterate_find(struct rd_iterate *it, struct rd_function *f,
     it->count = 0;
     it->spacing = 2 * radius / (double)within->count;
     for (int try = 0; try < MOST_TRIES; try++) {
-        const size_t first = it->count, known = inside(it, radius, it->at);
+        const size_t first = it->count, known = inside(it, within, it->at);
         if (known >= within->count || first + within->count - known > it->most)
             break;
         const size_t missing = within->count - known;
-        size_t placed = try == 0 ? take_guesses(it, radius, missing, guesses, guess)
+        size_t placed = try == 0 ? take_guesses(it, within, missing, guesses, guess)
                                  : guess_missing(it, within, known, missing);
         for (; placed < missing; placed++) {
             const double turns = GOLDEN * (double)(first + placed);
-            it->next[placed] = radius * sqrt(((double)placed + 0.5) / (double)missing) *
-                               cexp(CMPLX(0, 2 * PI * (turns - floor(turns))));
+            it->next[placed] = within->middle + radius *
+                                                    sqrt(((double)placed + 0.5) / (double)missing) *
+                                                    cexp(CMPLX(0, 2 * PI * (turns - floor(turns))));
         }
         it->count += missing;
         const enum rd_status status = iterate(it, f, first);

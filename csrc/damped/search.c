@@ -31,13 +31,14 @@ struct arrays {
 static enum rd_status take(const struct rd_search *search, double wide,
                            struct rd_workspace *workspace, struct arrays *a)
 {
-    const double reach = fmin(1.1 * wide, (wide + search->horizon) / 2);
+    const double most = search->middle + wide;
+    const double reach = fmin(1.1 * most, (most + search->horizon) / 2);
     rd_function_take(search->chain, &search->damping, search->stop, reach, workspace, &a->function);
     rd_iterate_take(search->room, workspace, &a->iterate);
     rd_circle_take(search->room, workspace, &a->circle);
     a->group = rd_take(workspace, a->iterate.most, sizeof *a->group);
     a->spare = rd_take(workspace, a->iterate.most, sizeof *a->spare);
-    return rd_winding_take(&a->function, wide, workspace, &a->winding);
+    return rd_winding_take(&a->function, search->middle, wide, workspace, &a->winding);
 }
 
 /* Roots inside the circle first, of mirror images those with Im s > 0; how many they are. */
@@ -47,7 +48,7 @@ static size_t wanted_first(struct arrays *a)
     const double least = a->winding.mirror == RD_NO_MIRROR ? -INFINITY : -REAL * it->spacing;
     size_t wanted = 0, others = 0;
     for (size_t i = 0; i < it->count; i++)
-        if (cabs(it->z[i]) < a->winding.radius && cimag(it->z[i]) >= least)
+        if (cabs(it->z[i] - a->winding.middle) < a->winding.radius && cimag(it->z[i]) >= least)
             it->z[wanted++] = it->z[i];
         else
             a->spare[others++] = it->z[i];
@@ -70,7 +71,7 @@ static enum rd_status settle(struct rd_search *search, struct arrays *a, size_t 
         if (search->found + count == search->room)
             return RD_OK;
         member[count++] = it->z[i];
-        most = fmax(most, cabs(it->z[i]));
+        most = fmax(most, cabs(it->z[i] - a->winding.middle));
         height += cimag(it->z[i]);
     }
     /* what lies beyond the circle is not known */
@@ -135,17 +136,18 @@ static enum rd_status search_within(struct rd_search *search, struct arrays *a)
 enum rd_status rd_search(struct rd_search *search, struct rd_workspace *workspace)
 {
     const size_t used = workspace->used;
+    const double most = search->edge - search->middle;
     struct arrays a;
     if (!isfinite(search->radius))
         return RD_SHORT_WAVES;
     search->certified = false;
     search->sweeps = search->count = search->found = 0;
     if (workspace->base == NULL) {
-        const double widest = fmin(search->radius * NUDGES[MOST_NUDGES - 1], search->edge);
+        const double widest = fmin(search->radius * NUDGES[MOST_NUDGES - 1], most);
         return take(search, widest, workspace, &a);
     }
     for (int k = 0; k < MOST_NUDGES && !search->certified; k++) {
-        const double wide = fmin(search->radius * NUDGES[k], search->edge);
+        const double wide = fmin(search->radius * NUDGES[k], most);
         workspace->used = used;
         enum rd_status status = take(search, wide, workspace, &a);
         if (status == RD_OK)

@@ -8,10 +8,12 @@ struct rd_search {
     const struct rd_chain *chain; /* one component, between nodes that nothing moves */
     struct rd_damping damping;
     struct rd_stop stop;
-    double radius;        /* of the circle asked for [rad/s] */
-    double edge, horizon; /* it grows to `edge` at most; the function is asked for |s| below
+    double middle; /* of the circle asked for, real and 0 or more [rad/s] */
+    double radius; /* of it [rad/s] */
+    double edge,
+        horizon;    /* middle + radius grows to `edge` at most; the function is asked for |s| below
                                     the middle between it and `horizon` [rad/s] */
-    size_t guesses;       /* places to begin with, which have their mirror images beside them */
+    size_t guesses; /* places to begin with, which have their mirror images beside them */
     const double _Complex *guess; /* (guesses) [rad/s] */
     size_t room;                  /* roots inside the circle, at most */
 

@@ -49,17 +49,18 @@ static double turning(const struct rd_chain *chain, double radius)
     return sum;
 }
 
-enum rd_status rd_winding_take(const struct rd_function *f, double radius,
+enum rd_status rd_winding_take(const struct rd_function *f, double middle, double radius,
                                struct rd_workspace *workspace, struct rd_winding *w)
 {
     /* waves turn the function twice as far between s and -s */
-    double arcs = 2 * (double)f->chain->width * rd_function_turning(f, radius) / RADIANS;
-    arcs = ceil(fmax(FIRST, arcs)) + turning(f->chain, radius);
+    double arcs = 2 * (double)f->chain->width * rd_function_turning(f, middle + radius) / RADIANS;
+    arcs = ceil(fmax(FIRST, arcs)) + turning(f->chain, middle + radius);
     if (!(arcs < MOST_FIRST))
         return RD_SHORT_WAVES;
     const size_t begin = (size_t)arcs * (f->mirror == RD_NO_MIRROR ? 2 : 1);
     const size_t most = 4 * begin + 2 * MOST_ARCS;
     *w = (struct rd_winding){
+        .middle = middle,
         .radius = radius,
         .mirror = f->mirror,
         .begin = begin,
@@ -72,13 +73,13 @@ enum rd_status rd_winding_take(const struct rd_function *f, double radius,
 }
 
 /* values at so many angles, RD_LANES at most */
-static enum rd_status ask(struct rd_function *f, double radius, size_t count, struct point *point,
-                          bool *clear)
+static enum rd_status ask(struct rd_function *f, const struct rd_winding *w, size_t count,
+                          struct point *point, bool *clear)
 {
     double _Complex s[RD_LANES] = {0}, value[RD_LANES];
     double magnitude[RD_LANES];
     for (size_t i = 0; i < count; i++)
-        s[i] = radius * cexp(CMPLX(0, point[i].angle));
+        s[i] = w->middle + w->radius * cexp(CMPLX(0, point[i].angle));
     const enum rd_status status = rd_function_at(f, count, s, value, magnitude);
     for (size_t i = 0; status == RD_OK && i < count; i++) {
         point[i].value = value[i];
@@ -98,7 +99,7 @@ static enum rd_status begin(struct rd_function *f, struct rd_winding *w, bool *c
         const size_t count = n + 1 - first < RD_LANES ? n + 1 - first : RD_LANES;
         for (size_t i = 0; i < count; i++)
             point[i].angle = whole * (double)(first + i) / (double)n;
-        const enum rd_status status = ask(f, w->radius, count, point, clear);
+        const enum rd_status status = ask(f, w, count, point, clear);
         if (status != RD_OK || !*clear)
             return status;
         for (size_t i = 0, k = first; i < count; i++, k++) {
@@ -165,7 +166,7 @@ enum rd_status rd_winding_walk(struct rd_function *f, struct rd_winding *w, bool
             arc[i] = w->arc[open + i];
             middle[i].angle = (arc[i].end[0].angle + arc[i].end[1].angle) / 2;
         }
-        status = ask(f, w->radius, count, middle, &clear);
+        status = ask(f, w, count, middle, &clear);
         if (status == RD_OK && !halve(w, arc, middle, count, &open))
             return RD_OK;
     }
@@ -192,8 +193,10 @@ void rd_winding_moments(const struct rd_winding *w, size_t count, const double _
         const double _Complex from = cexp(CMPLX(0, w->end[2 * i]));
         const double _Complex to = cexp(CMPLX(0, w->end[2 * i + 1]));
         double _Complex left = w->change[i], first = 1, last = 1;
-        for (size_t j = 0; j < count; j++)
-            left -= clog((to - known[j] / w->radius) / (from - known[j] / w->radius));
+        for (size_t j = 0; j < count; j++) {
+            const double _Complex at = (known[j] - w->middle) / w->radius;
+            left -= clog((to - at) / (from - at));
+        }
         for (size_t k = 0; k < number; k++) {
             first *= from;
             last *= to;

@@ -51,8 +51,8 @@ PyObject *py_damped(PyObject *module, PyObject *arguments)
     struct rd_search search = {0};
     PyArrayObject *constant = NULL, *linear = NULL, *guess = NULL;
     PyObject *object[4], *value = NULL, *error = NULL, *found[2] = {NULL}, *result = NULL;
-    if (!PyArg_ParseTuple(arguments, "OOOdddO", object, object + 1, object + 2, &search.radius,
-                          &search.edge, &search.horizon, object + 3))
+    if (!PyArg_ParseTuple(arguments, "OOOddddO", object, object + 1, object + 2, &search.middle,
+                          &search.radius, &search.edge, &search.horizon, object + 3))
         return NULL;
     if (py_chain_view(object[0], &parsed) < 0)
         goto done;

@@ -40,6 +40,7 @@ static npy_intp solve_all(PyObject *module, const struct py_response *response)
     struct py_watch watch;
     const struct rd_stop stop = py_watch_begin(&watch);
     enum rd_status status = rd_mixed_frf_prepare(chain, drives, responses, &frf, &workspace);
+    frf.mixed.lu.stop = stop;
     if (status == RD_OK)
         solved = solve_each(&frf, response, &stop, &status);
     PyMem_RawFree(workspace.base);
@@ -86,14 +87,16 @@ PyObject *py_mixed_deflection(PyObject *module, PyObject *arguments)
     rd_mixed_deflection_prepare(&parsed.chain, &deflection, &workspace);
     if (py_workspace_allocate(&workspace) < 0)
         goto done;
-    enum rd_status status;
-    Py_BEGIN_ALLOW_THREADS
-    status = rd_mixed_deflection_prepare(&parsed.chain, &deflection, &workspace);
+    struct py_watch watch;
+    const struct rd_stop stop = py_watch_begin(&watch);
+    enum rd_status status = rd_mixed_deflection_prepare(&parsed.chain, &deflection, &workspace);
+    deflection.mixed.lu.stop = stop;
     if (status == RD_OK)
         status = rd_mixed_deflection_solve(&deflection, PyArray_DATA(load),
                                            PyArray_DATA((PyArrayObject *)displacement),
                                            PyArray_DATA((PyArrayObject *)force));
-    Py_END_ALLOW_THREADS
+    if (py_watch_end(&watch) < 0)
+        goto done;
     if (status == RD_OK)
         result = PyTuple_Pack(2, displacement, force);
     else

@@ -40,7 +40,11 @@ enum rd_status rd_mixed_deflection_solve(struct rd_mixed_deflection *deflection,
     fill_load(deflection, load);
     rd_mixed_solve(mixed, 1, deflection->load, deflection->solution);
     rd_mixed_spread(mixed, deflection->solution, deflection->spread);
-    if (rd_mixed_is_lost(mixed, deflection->solution, deflection->spread, deflection->scratch))
+    const bool lost =
+        rd_mixed_is_lost(mixed, deflection->solution, deflection->spread, deflection->scratch);
+    if (rd_stop_is_asked(&mixed->lu.stop))
+        return RD_INTERRUPTED;
+    if (lost)
         return RD_SINGULAR;
     for (size_t i = 0; i < nodes; i++)
         for (size_t a = 0; a < w; a++) {

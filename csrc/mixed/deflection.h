@@ -18,7 +18,7 @@ enum rd_status rd_mixed_deflection_prepare(const struct rd_chain *chain,
                                            struct rd_workspace *workspace);
 
 /* displacement (nodes, width) and force (nodes - 1, width) on the right ends of the elements under
-   load (nodes, width). RD_SINGULAR where the motion has no correct digit. */
+   load (nodes, width). RD_SINGULAR where the motion has no correct digit, RD_INTERRUPTED */
 enum rd_status rd_mixed_deflection_solve(struct rd_mixed_deflection *deflection, const double *load,
                                          double *displacement, double *force);
 

@@ -32,7 +32,10 @@ enum rd_status rd_mixed_frf_solve(struct rd_mixed_frf *frf, const double _Comple
     for (size_t d = 0; d < drives; d++) {
         const double _Complex *x = frf->solution + d * n;
         rd_mixed_spread(&frf->mixed, x, frf->spread);
-        if (rd_mixed_is_lost(&frf->mixed, x, frf->spread, frf->scratch))
+        const bool lost = rd_mixed_is_lost(&frf->mixed, x, frf->spread, frf->scratch);
+        if (rd_stop_is_asked(&frf->mixed.lu.stop))
+            return RD_INTERRUPTED;
+        if (lost)
             return RD_SINGULAR;
         for (size_t r = 0; r < responses; r++) {
             const size_t at = stride * (d * responses + r);

@@ -23,7 +23,7 @@ enum rd_status rd_mixed_frf_prepare(const struct rd_chain *chain, const struct r
    r) of both arrays:
        value   displacement or force per force
        error   its estimated absolute rounding error
-   RD_SINGULAR where the motion has no correct digit, as on an undamped resonance. */
+   RD_SINGULAR where the motion has no correct digit, as on an undamped resonance; RD_INTERRUPTED */
 enum rd_status rd_mixed_frf_solve(struct rd_mixed_frf *frf, const double _Complex *factor,
                                   size_t stride, double _Complex *value, double *error);
 

@@ -1,7 +1,6 @@
 /* The mixed form of a chain: forces of elements beside displacements of nodes, as one band. */
 #include "mixed/mixed.h"
 
-#include "base/lapack.h"
 #include "chain/attached.h"
 #include "chain/elements.h"
 #include "element/element.h"
@@ -50,9 +49,14 @@ enum rd_status rd_mixed_prepare(const struct rd_chain *chain, struct rd_mixed *m
     mixed->reach = 2 * chain->width - 1;
     mixed->block = rd_take(workspace, chain->nodes, sizeof *mixed->block);
     mixed->band = rd_take(workspace, mixed->size * (2 * mixed->reach + 1), sizeof *mixed->band);
-    mixed->factor = rd_take(workspace, mixed->size * (3 * mixed->reach + 1), sizeof *mixed->factor);
     mixed->rest = rd_take(workspace, mixed->size, sizeof *mixed->rest);
-    mixed->pivot = rd_take(workspace, mixed->size, sizeof *mixed->pivot);
+    const size_t all = mixed->size * (3 * mixed->reach + 1);
+    mixed->lu = (struct rd_lu){
+        .size = mixed->size,
+        .reach = mixed->reach,
+        .factor = rd_take(workspace, all, sizeof *mixed->lu.factor),
+        .pivot = rd_take(workspace, mixed->size, sizeof *mixed->lu.pivot),
+    };
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
     find_scale(chain, mixed->z);
@@ -171,13 +175,11 @@ enum rd_status rd_mixed_factorise(struct rd_mixed *mixed, const double _Complex 
         return status;
     const size_t reach = mixed->reach, from = 2 * reach + 1, to = 3 * reach + 1;
     for (size_t j = 0; j < mixed->size; j++) {
-        memset(mixed->factor + j * to, 0, reach * sizeof *mixed->factor);
-        memcpy(mixed->factor + j * to + reach, mixed->band + j * from, from * sizeof *mixed->band);
+        double _Complex *const column = mixed->lu.factor + j * to;
+        memset(column, 0, reach * sizeof *column);
+        memcpy(column + reach, mixed->band + j * from, from * sizeof *column);
     }
-    const int n = (int)mixed->size, k = (int)reach;
-    const int info =
-        LAPACKE_zgbtrf_work(LAPACK_COL_MAJOR, n, n, k, k, mixed->factor, (int)to, mixed->pivot);
-    return info == 0 ? RD_OK : RD_SINGULAR;
+    return rd_lu_factorise(&mixed->lu);
 }
 
 /* first and last row of column j */
@@ -187,19 +189,12 @@ static void rows_of(const struct rd_mixed *mixed, size_t j, size_t *first, size_
     *last = j + mixed->reach < mixed->size ? j + mixed->reach : mixed->size - 1;
 }
 
-static void back_substitute(const struct rd_mixed *mixed, size_t columns, double _Complex *x)
-{
-    const int n = (int)mixed->size, k = (int)mixed->reach;
-    LAPACKE_zgbtrs_work(LAPACK_COL_MAJOR, 'N', n, k, k, (int)columns, mixed->factor, 3 * k + 1,
-                        mixed->pivot, x, n);
-}
-
 void rd_mixed_solve(struct rd_mixed *mixed, size_t columns, const double _Complex *b,
                     double _Complex *x)
 {
     const size_t n = mixed->size, column = 2 * mixed->reach + 1;
     memcpy(x, b, columns * n * sizeof *x);
-    back_substitute(mixed, columns, x);
+    rd_lu_solve(&mixed->lu, columns, x);
     for (size_t c = 0; c < columns; c++) {
         memcpy(mixed->rest, b + c * n, n * sizeof *mixed->rest);
         for (size_t j = 0; j < n; j++) {
@@ -208,7 +203,7 @@ void rd_mixed_solve(struct rd_mixed *mixed, size_t columns, const double _Comple
             for (size_t i = first; i <= last; i++)
                 mixed->rest[i] -= mixed->band[j * column + mixed->reach + i - j] * x[c * n + j];
         }
-        back_substitute(mixed, 1, mixed->rest);
+        rd_lu_solve(&mixed->lu, 1, mixed->rest);
         for (size_t i = 0; i < n; i++)
             x[c * n + i] += mixed->rest[i];
     }

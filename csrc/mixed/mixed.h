@@ -6,6 +6,7 @@
 #include "base/complex.h"
 #include "base/workspace.h"
 #include "chain/ports.h"
+#include "mixed/lu.h"
 
 #include <stdbool.h>
 
@@ -22,26 +23,28 @@
    stiffness of elements as units it would grow with n^4. */
 struct rd_mixed {
     const struct rd_chain *chain;
-    size_t size;             /* unknowns */
-    size_t reach;            /* the largest distance of two that meet, 2 width - 1 */
-    double z[RD_WIDTH_MAX];  /* scale of each coordinate */
-    size_t *block;           /* (nodes) block of the node's displacement */
-    double _Complex *band;   /* (size, 2 reach + 1) */
-    double _Complex *factor; /* (size, 3 reach + 1) its LU */
-    double _Complex *rest;   /* (size) */
-    int32_t *pivot;          /* (size) */
+    size_t size;            /* unknowns */
+    size_t reach;           /* the largest distance of two that meet, 2 width - 1 */
+    double z[RD_WIDTH_MAX]; /* scale of each coordinate */
+    size_t *block;          /* (nodes) block of the node's displacement */
+    double _Complex *band;  /* (size, 2 reach + 1) */
+    struct rd_lu lu;        /* of the band */
+    double _Complex *rest;  /* (size) */
 };
 
-/* Takes the arrays and fills what does not depend on frequency. */
+/* Takes the arrays and fills what does not depend on frequency; nothing is asked whether to stop until
+   lu.stop is set. */
 enum rd_status rd_mixed_prepare(const struct rd_chain *chain, struct rd_mixed *mixed,
                                 struct rd_workspace *workspace);
 
 /* Fills at the factors (RD_PARTS) of sections, tension, springs, inertia and dashpots, and factorises.
-   RD_SINGULAR where that meets an exact zero, RD_CRITICAL_ELEMENT where an element has no triple. */
+   RD_SINGULAR where that meets an exact zero, RD_CRITICAL_ELEMENT where an element has no triple,
+   RD_INTERRUPTED. */
 enum rd_status rd_mixed_factorise(struct rd_mixed *mixed, const double _Complex *factor);
 
 /* x (columns, size) <- solution for the right-hand side b (columns, size), refined once: small
-   relative errors of the entries of the band are then all that rounding amounts to */
+   relative errors of the entries of the band are then all that rounding amounts to. Where lu.stop
+   has said yes x has no meaning, nor has what follows from it. */
 void rd_mixed_solve(struct rd_mixed *mixed, size_t columns, const double _Complex *b,
                     double _Complex *x);
 

@@ -1,4 +1,4 @@
-"""Undamped responses at the frequency of a mode that no force excites or no response sees.
+"""Responses at the frequency of an undamped mode that no force excites or no response sees.
 
 There the dynamic stiffness is singular and the response is not: no term of its sum over modes has
 that pole. It is analytic around the line, and so the mean of its values on a circle,
@@ -20,17 +20,17 @@ from ..base.array import Complex, Flags, Real
 from ..scene import damping
 from .question import Bound, OnResonance, Question, Solver, damped_lines
 
-HALF = 16  # Points of a half circle; the other half has the conjugate values.
-RADII = 2.0 ** -np.arange(2.0, 14.0)  # of circles, over the frequency
-THETA = np.pi * (np.arange(HALF) + 0.5) / HALF
-ORDERS = np.arange(-HALF // 2, HALF)  # of c_m
+COUNT = 32  # Points of a circle.
+RADII = 2.0 ** -np.arange(2.0, 22.0)  # of circles, over the frequency
+THETA = 2 * np.pi * (np.arange(COUNT) + 0.5) / COUNT
+ORDERS = np.arange(-COUNT // 4, COUNT // 2)  # of c_m
 LAST = 4  # The highest orders tell what a circle does not resolve.
 
 
 class AtNode(NamedTuple):
     """A response at one frequency, (drives, responses)."""
 
-    value: Real
+    value: Complex
     error: Real  # absolute
 
 
@@ -41,7 +41,7 @@ def answers_at_nodes(solver: Solver) -> Solver:
         missing = np.zeros(len(question.frequency), dtype=np.bool_)
         lines: list[tuple[Flags, AtNode]] = []
         rest = question
-        while True:
+        while not missing.all():
             try:
                 found, bound = solver(rest)
                 break
@@ -59,8 +59,10 @@ def answers_at_nodes(solver: Solver) -> Solver:
                 )
         if not lines:
             return found, bound
-        value = np.zeros((*found.shape[:2], len(missing)), dtype=np.complex128)
-        value[..., ~missing] = found
+        shape = len(question.drives), len(question.responses), len(missing)
+        value = np.zeros(shape, dtype=np.complex128)
+        if not missing.all():
+            value[..., ~missing] = found
         for same, line in lines:
             value[..., same] = line.value[..., None]
 
@@ -79,9 +81,10 @@ def answers_at_nodes(solver: Solver) -> Solver:
 
 def _mean(solver: Solver, question: Question, frequency: float, factor: Complex) -> AtNode | None:
     """Return the mean on the largest circle that has no pole in it, if there is one."""
-    chain = question.model.chain.only(question.component)
-    if question.decay or damped_lines(chain, factor).any():
+    if question.decay:
         return None
+    chain = question.model.chain.only(question.component)
+    damped = damped_lines(chain, factor).any()
     turned = np.exp(1j * np.multiply.outer(ORDERS, THETA))
     for radius in RADII:
         # growing or decaying, all are alike without damping
@@ -92,9 +95,10 @@ def _mean(solver: Solver, question: Question, frequency: float, factor: Complex)
             factor=np.ascontiguousarray(damping.factors(question.model.scene.dampings, omega).T),
         )
         value, bound = solver(asked)
-        order = np.abs((value[:, :, None] * turned).real.mean(axis=-1))
+        order = np.abs((value[:, :, None] * turned).mean(axis=-1))
         noise = bound().max(axis=-1)
         beside = order[..., ORDERS < 0].sum(axis=-1) + order[..., -LAST:].sum(axis=-1)
         if (beside <= noise).all():
-            return AtNode(value.real.mean(axis=-1), noise + beside)
+            mean = value.mean(axis=-1)
+            return AtNode(mean if damped else mean.real + 0j, noise + beside)
     return None

@@ -27,6 +27,8 @@ from ..chain.port import Point
 from .question import Bound, Question, Solver
 from .rounding import EPS
 
+STILL = 1e-8  # Motion of an end over that under the spring alone, of which digits may be lost.
+
 
 def is_end(drive: tuple[Any, ...]) -> bool:
     """Whether the drive is the motion of an end, such as ("end", 0, "z")."""
@@ -79,7 +81,9 @@ def _transmitted(question: Question, end: Point, solver: Solver) -> tuple[Comple
     model, own = released(question.model, end)
     responses = question.responses
     asked = [own, *responses]
-    value, bound = solver(dataclasses.replace(question, model=model, drives=[own], responses=asked))
+    freed = dataclasses.replace(question, model=model, drives=[own], responses=asked)
+    value, bound = solver(freed)
+    _refuse_still(question, freed, value[0, 0], solver)
     ratio = value[0, 1:] / value[0, :1]
     same = [k for k, point in enumerate(responses) if point == own]
     ratio[same] = 1.0
@@ -93,6 +97,25 @@ def _transmitted(question: Question, end: Point, solver: Solver) -> tuple[Comple
         return np.asarray(wrong)
 
     return ratio, bound_of_ratio
+
+
+def _refuse_still(question: Question, freed: Question, motion: Complex, solver: Solver) -> None:
+    """Refuse lines where no digit is left of the motion of an end that a force moves."""
+    # it stands still on the resonances of the rope whose end is held
+    spring, _ = _hold(question.model, freed.drives[0][0])
+    small = np.flatnonzero(np.abs(motion) * spring < STILL)
+    if not small.size:
+        return
+    alone = dataclasses.replace(
+        freed,
+        responses=freed.drives,
+        frequency=freed.frequency[small],
+        factor=np.ascontiguousarray(freed.factor[:, small]),
+    )
+    value, bound = solver(alone)
+    lost = small[np.abs(value[0, 0]) <= bound()[0, 0]]
+    if lost.size:
+        raise question.resonance(int(lost[0]))
 
 
 def released(model: Compiled, end: tuple[Any, ...]) -> tuple[Compiled, Point]:

@@ -130,6 +130,8 @@ def in_slices(
     lanes: int = LANES,
 ) -> tuple[NDArray[Any], ...]:
     """Solve slices of the frequencies, several at a time; the bits do not depend on them."""
+    # only the main thread sees Ctrl-C: what takes long by itself is solved there
+    workers = 1 if steps > most else workers
     size = max(lanes, most // max(steps, 1) // lanes * lanes)
     if count * steps > most // 16:
         size = min(size, max(lanes, -(-count // workers // lanes) * lanes))

@@ -54,10 +54,10 @@ static bool wind(const struct rd_chain *chain, double radius, size_t known, size
     double complex root[ROOM];
     bool found;
     rd_function_take(chain, &damping, stop, 1.4 * radius, &space, &f);
-    CHECK_INT(rd_winding_take(&f, radius, &space, &w), RD_NO_MEMORY);
+    CHECK_INT(rd_winding_take(&f, 0, radius, &space, &w), RD_NO_MEMORY);
     space = exact_workspace(space.used);
     CHECK(rd_function_take(chain, &damping, stop, 1.4 * radius, &space, &f));
-    CHECK_INT(rd_winding_take(&f, radius, &space, &w), RD_OK);
+    CHECK_INT(rd_winding_take(&f, 0, radius, &space, &w), RD_OK);
     CHECK_INT(rd_winding_walk(&f, &w, &found), RD_OK);
     *count = w.count;
     for (size_t k = 0; k < known; k++) {

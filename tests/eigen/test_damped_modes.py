@@ -134,6 +134,41 @@ def test_matched_end_lets_no_motion_stay():
         scene.compile().modes(10, damped=True)
 
 
+@pytest.mark.parametrize("number", [12, 14, 24])
+@pytest.mark.claim(
+    "Complex modes of a string with a dashpot of twice its impedance: distance / estimate",
+    reference="Newton's step of exp(t) - cosh(0.4 t) in 40 digits; none missed or doubled",
+    accepted=1.0,
+)
+def test_twice_the_impedance_has_the_modes_of_its_closed_form(number, claim):
+    # sinh t + 2 sinh(a t) sinh(b t) with a + b = 1, t = s L/v
+    time = L * math.sqrt(MU / T)
+    modes = string(rd.Dashpot(0.3 * L, 2 * Z)).compile().modes(number, damped=True)
+    # rounding of c puts rates at log(eps)/0.6: beyond them no circle around 0 tells all
+    assert not modes.certified
+    assert 20 < 2 * math.pi * modes.searched * time < 61
+    assert (modes.decay_rate < 2 * math.pi * modes.searched).all()
+    radius = (1 + 1e-6) * np.abs(modes.eigenvalue[-1]) * time
+    around = radius * np.exp(2j * np.pi * np.arange(20001) / 20000)
+    f = np.exp(around) - np.cosh(0.4 * around)
+    count = round(np.angle(f[1:] / f[:-1]).sum() / (2 * np.pi))
+    assert count == 2 * number + 1  # and 0, no motion at all
+    assert len(set(modes.eigenvalue)) == number
+    for s, error in zip(modes.eigenvalue, 2 * np.pi * modes.rounding_error):
+        t = mpmath.mpc(s) * L * mpmath.sqrt(mpmath.mpf(MU) / T)
+        step = newton(lambda t: mpmath.exp(t) - mpmath.cosh(mpmath.mpf(4) / 10 * t), t)
+        # with 4 eps of the float units
+        claim(step / time / (error + 4 * EPS * abs(s)))
+    assert "may be missing" in str(modes.table())
+
+
+@pytest.mark.parametrize("asked", [{"number": 40}, {"below": 420.0}])
+def test_twice_the_impedance_does_not_tell_all_modes(asked):
+    model = string(rd.Dashpot(0.3 * L, 2 * Z)).compile()
+    with pytest.raises(rd.SolveError, match="matches the rope's impedance"):
+        model.modes(**asked, damped=True)
+
+
 def test_nearly_matched_end_lets_motion_stay_for_log_of_the_mismatch():
     # cosh + (c/Z) sinh = 0 for c > Z: exp(2 pi lam) = (c - 1)/(c + 1), lam = log(..)/2 pi + i k
     modes = string(ends=("clamped", rd.End(z="free", dashpot={"z": 1.01 * Z}))).compile()

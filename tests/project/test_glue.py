@@ -224,7 +224,7 @@ ENTRIES = {
     "steps": lambda chain: _core.steps(chain, FACTOR.T.copy()),
     "scales": lambda chain: _core.scales(chain, FACTOR.T.copy()),
     "damped": lambda chain: _core.damped(
-        chain, CONSTANT, SLOPE, 30.0, np.inf, np.inf, np.array([20j, -20j])
+        chain, CONSTANT, SLOPE, 0.0, 30.0, np.inf, np.inf, np.array([20j, -20j])
     ),
     "mixed": lambda chain: _core.mixed(chain, FACTOR.T.copy(), PORT, PORT),
     "mixed_deflection": lambda chain: _core.mixed_deflection(chain, FORCE),
@@ -1370,7 +1370,7 @@ def test_ctrl_c_stops_a_long_search_for_damped_modes():
         start = time.perf_counter()
         signal.setitimer(signal.ITIMER_REAL, 0.2)
         with pytest.raises(KeyboardInterrupt):
-            _core.damped(chain, CONSTANT, SLOPE, 1e4, np.inf, np.inf, np.zeros(0, complex))
+            _core.damped(chain, CONSTANT, SLOPE, 0.0, 1e4, np.inf, np.inf, np.zeros(0, complex))
         waited = time.perf_counter() - start - 0.2
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)

@@ -627,3 +627,26 @@ def test_foot_of_an_undamped_resonator_stands_still_at_its_own_frequency(element
     still = model.static({("z", 0.4): 1.0}).displacement.max()
     # e = 1e-20 stands for 0: an eps of the string's own motion in k/(m omega^2) of 1e10
     assert abs(value) < 1e-9 * still
+
+
+@pytest.mark.parametrize("beside", [0.0, 1e-15, 1e-12, 1e-9, 1e-6])
+@pytest.mark.parametrize(("mass", "own"), [(1e-3, 1e-3), (1e-6, 1e-3), (0.01, 16.0), (1e-9, 1e-2)])
+def test_a_light_and_slow_resonator_is_bounded_at_its_own_frequency(mass, own, beside):
+    # its stiffness -m k lambda/(k - m lambda), infinite there, on that of both halves of a string
+    f = own * (1 + beside)
+    model = taut(rd.Resonator(0.5, mass, own)).compile()
+    frf = model.frf(f, drive=("z", 0.5), response=[("z", 0.5), ("z", 0.25)])
+    with mpmath.workdps(60):
+        lam, wave = omega(f) ** 2, omega(f) * mpmath.sqrt(mpf(DENSITY) / TENSION)
+        halves = 2 * TENSION * wave * mpmath.cot(wave / 2)
+        k = mpf(mass) * omega(own) ** 2
+        soft = k - mpf(mass) * lam
+        foot = soft / (soft * halves - mpf(mass) * lam * k)
+        exact = [foot, foot * mpmath.sin(wave / 4) / mpmath.sin(wave / 2)]
+        value = [mpmath.mpmathify(complex(v)) for v in frf.value[:, 0]]
+        error = np.array([abs(v - h) for v, h in zip(value, exact)], float)
+        size = np.array([abs(v) for v in value], float)
+    assert (error <= frf.rounding_limit[:, 0]).all()
+    assert (error <= frf.rounding_error[:, 0] * size).all()
+    if beside == 0:  # 0 in truth, so that no relative bound is one
+        assert (frf.rounding_error[:, 0] > 1).all()

@@ -6,7 +6,6 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import BENDING, EPS, LENGTH, beam, reference
-from scipy.linalg import eigh
 
 import ropedyn as rd
 
@@ -197,45 +196,6 @@ def test_frequency_next_to_an_undamped_resonance_has_the_digits_left(solver, mos
         exact = float(1 / (400 - (2 * mpmath.pi * f) ** 2 / 20))
     frf = model.frf(f, drive=("z", 0.5), solver=solver)
     assert abs(frf.value[0, 0] / exact - 1) <= frf.rounding_error[0, 0] <= most * EPS / abs(away)
-
-
-@pytest.mark.parametrize("solver", ["sweep", "band", "lapack"])
-@pytest.mark.parametrize("mode", [2, 4])
-def test_force_at_a_node_of_the_resonant_mode_is_answered(solver, mode):
-    # half way, even modes stand still; the response there is that of the odd ones alone
-    model = beam(16, tension=300.0).compile(elements=16, element="rigid")
-    f = float(model.modes(mode).frequency[mode - 1])
-    square, shape = eigh(model.stiffness_matrix().toarray(), model.mass_matrix().toarray())
-    middle, other = shape[len(shape) // 2 - 1], np.arange(len(square)) != mode - 1
-    exact = (middle**2 / (square - (2 * np.pi * f) ** 2))[other].sum()
-    frf = model.frf([0.9 * f, f, f, 1.1 * f], drive=("z", LENGTH / 2), solver=solver)
-    assert frf.value[0, 1] == frf.value[0, 2]
-    # the eigenvalues of the check keep 13 digits beside the largest, 10 beside these
-    assert abs(frf.value[0, 1] / exact - 1) <= 1e-10
-    assert frf.rounding_error[0, 1] <= 1e-9
-
-
-@pytest.mark.parametrize("watched", [0.3, 0.5])
-def test_spans_answer_where_a_node_of_the_resonant_mode_is_driven(watched):
-    # the limit of sin(k a) sin(k (L - x))/(T k sin(k L)) at k L = 2 pi
-    model = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile()
-    frf = model.frf(100.0, drive=("z", 0.5), response=("z", watched))
-    k, a, x = 2 * np.pi, min(watched, 0.5), max(watched, 0.5)
-    slope = (1 - x) * np.cos(k * (1 - x)) * np.sin(k * a)
-    slope += a * np.cos(k * a) * np.sin(k * (1 - x))
-    exact = slope / (1000.0 * k)
-    assert abs(frf.value[0, 0] - exact) <= frf.rounding_limit[0, 0] <= 1e-17
-
-
-def test_a_line_alone_at_a_node_has_its_bound_beside_structures_too():
-    resonator = rd.Resonator(0.5, 0.01, 40.0)
-    model = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0, parts=[resonator]).compile()
-    # the second mode of the rope alone, in which the resonator stands still
-    frf = model.frf([100.0], drive=("z", 0.5), response=("z", 0.3))
-    beside = model.frf([100.0 - 1e-3, 100.0 + 1e-3], drive=("z", 0.5), response=("z", 0.3))
-    # curvature over (1e-5)^2
-    assert frf.value[0, 0] == pytest.approx(beside.value[0].mean(), rel=1e-8)
-    assert frf.rounding_error[0, 0] <= 1e-11
 
 
 def test_static_limit_of_a_clamped_beam_is_the_textbook_value():

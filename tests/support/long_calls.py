@@ -30,6 +30,24 @@ LAID = HELD.replace(
 )
 STRING = rd.Scene(rd.Rope(10.0, 0.1), tension=1000.0)
 SHORT = rd.Scene(rd.Rope(2.0, 0.2), tension=500.0)
+STRAND = rd.Construction.standard("1x19", diameter=20e-3)
+UNSEEN = ("rotary_inertia", "polar_inertia", "axial_stiffness", "torsional_stiffness")
+RUBBING = rd.Scene(
+    rd.Rope.from_construction(6.0, STRAND, lay_coupling=None, **dict.fromkeys(UNSEEN)),
+    tension=30e3,
+    ends=("pinned", "pinned"),
+    damping=(STRAND.section().wire_friction(0.3), rd.ViscousDamping(10.0)),
+)
+COIL = rd.Scene(
+    rd.Rope(
+        rd.Axis.helix(0.5, 0.4, 0.9),
+        0.8,
+        bending_stiffness=(40.0, 30.0),
+        torsional_stiffness=25.0,
+        axial_stiffness=1e5,
+    ),
+    planes="both",
+)
 BEADS = [rd.PointMass((k + 0.5) / 20, 1e-3 * (1 + k / 200)) for k in range(200)]
 PUSH = {"drive": ("z", 5.0), "response": ("z", 3.0)}
 TIME = np.linspace(0.0, 40.0, 400_001)
@@ -112,8 +130,20 @@ CALLS = {
         lambda: uneven(20_000, element="rigid"),
         lambda m: m.frf(LINES, solver="lapack", **PUSH),
     ),
+    "one response of many elements": (
+        lambda: uneven(500_000, element="rigid"),
+        lambda m: again(lambda: m.frf(LINES[:1], **PUSH)),
+    ),
+    "one response of many elements by the band": (
+        lambda: uneven(1_000_000, element="rigid"),
+        lambda m: again(lambda: m.frf(LINES[:3], solver="band", **PUSH)),
+    ),
+    "derivatives of responses": (
+        uneven,
+        lambda m: again(lambda: m.frf(LINES[::10], **PUSH).derivative("tension")),
+    ),
     "static deflections": (
-        lambda: uneven(200_000, element="rigid"),
+        lambda: uneven(1_000_000, element="rigid"),
         lambda m: again(lambda: m.static({("z", 5.0): 1.0})),
     ),
     "motion by modes": (
@@ -131,6 +161,13 @@ CALLS = {
     "motion by steps": (
         lambda: HELD.compile(elements=10_000, element="rigid"),
         lambda m: moved(m, "direct", SWEPT, step=1e-4),
+    ),
+    "motion by an integral equation": (
+        lambda: HELD.replace(
+            parts=[rd.NodeForce(3.0, lambda t, u, v: -1e4 * u**3)],
+            damping=rd.StiffnessDamping(1e-5),
+        ).compile(),
+        lambda m: again(lambda: moved(m, "auto", rd.Sine(20.0, 4.0), TIME[:40_001:20])),
     ),
     "motion against stops": (
         lambda: HELD.replace(parts=[rd.Stop(3.0, gap=1e-3, stiffness=1e4)]).compile(),
@@ -175,11 +212,34 @@ CALLS = {
         lambda: SHORT,
         lambda s: again(lambda: rd.identify(s, PEAKS, ["tension"])),
     ),
+    "identification with ends given": (
+        lambda: SHORT,
+        lambda s: again(lambda: rd.identify(s, PEAKS, ["tension"], ends="given")),
+    ),
     "plans": (lambda: SHORT, lambda s: again(lambda: rd.plan_measurement(s, 6, sensors=4))),
     "tracks": (lambda: SHORT, tracked),
     "prices of accuracy": (
         lambda: HELD,
         lambda s: rd.accuracy_cost(s, rd.ask.modes(20), elements=[100, 1000, 20_000], repeat=99),
+    ),
+    "prices of effects": (
+        lambda: HELD.replace(parts=BEADS[:20]),
+        lambda s: again(lambda: rd.effect_cost(s, rd.ask.modes(40))),
+    ),
+    "modes in space": (lambda: COIL, lambda s: again(lambda: s.compile().modes(40))),
+    "responses in space": (
+        COIL.compile,
+        lambda m: again(lambda: m.frf(LINES[:1000], drive=("z", 0.1))),
+    ),
+    "friction between wires": (
+        lambda: RUBBING.compile(),
+        lambda m: again(
+            lambda: m.frf(np.linspace(1.0, 9.0, 20), drive=("z", 1.8), amplitude=50.0)
+        ),
+    ),
+    "spreads of sections": (
+        STRAND.section,
+        lambda s: again(lambda: s.spread(20_000)),
     ),
     "sweeps over scenes": (
         lambda: [HELD.replace(tension=t) for t in np.linspace(500.0, 1500.0, 5000)],

@@ -245,7 +245,8 @@ def _taken(file: Path, sheet: Sheet, key: str, chosen: Any) -> Real:
                 )
             at.append((sheet.names or ()).index(one))
         else:
-            at.append(check.count(one, f"columns[{key!r}]", least=0, most=width - 1))
+            name = f"columns[{key!r}] of {str(file)!r}"
+            at.append(check.count(one, name, least=0, most=width - 1))
     return sheet.numbers[:, at].T
 
 

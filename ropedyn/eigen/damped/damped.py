@@ -29,7 +29,7 @@ from ..spectrum import lowest
 from ..vectors import UNSEEN, fractions, largest, points_for, within
 from .attached_energy import AttachedEnergy
 from .damped_modes import DampedModes
-from .damped_roots import Damped, Undamped, damped_roots
+from .damped_roots import Damped, Undamped, damped_roots, untold
 from .modal_rates import solve_modal
 from .rates import Rates
 from .residue import motions
@@ -53,6 +53,11 @@ class DampedRates:
     at: Index  # (k,) which of its rates
     radius: float  # none of a modulus below this is missing [rad/s]
 
+    @property
+    def certified(self) -> bool:
+        """Whether none is missing below the highest of them."""
+        return bool((np.abs(self.value) <= self.radius).all())
+
     def first(self, number: int) -> DampedRates:
         """Return the lowest alone."""
         return replace(
@@ -61,7 +66,7 @@ class DampedRates:
             error=self.error[:number],
             which=self.which[:number],
             at=self.at[:number],
-            radius=float(np.abs(self.value[number - 1])),
+            radius=min(self.radius, float(np.abs(self.value[number - 1]))),
         )
 
     @property
@@ -91,7 +96,7 @@ def solve_damped(
         x = within(model.x, finest)
     return DampedModes(
         coordinates=model.coordinates,
-        certified=all(part.certified for part in answer.found),
+        certified=answer.certified,
         searched=min(answer.radius, limit) / (2 * math.pi),
         x=x,
         eigenvalue=value,
@@ -114,12 +119,17 @@ def _find(
     if number is None:
         return _below(model, parts, undamped, limit)
     omega = _lowest(undamped, number + 2)
-    at, radius = number, 0.0
+    at, radius, known = number, 0.0, -1
+    told = [math.inf] * len(parts)
     while True:
         radius = max(_between(omega, at), 1.2 * radius)
-        answer = _below(model, parts, undamped, radius)
+        answer = _below(model, parts, undamped, radius, told)
         if len(answer.value) >= number:
             return answer.first(number)
+        if not answer.certified and len(answer.value) == known:
+            raise untold(radius)  # what more there may be decays too fast
+        known = len(answer.value)
+        told = [math.inf if part.certified else part.radius for part in answer.found]
         omega = _lowest(undamped, MORE * number + 4)
         most = len(omega) + (0 if model.element == "continuous" else DOUBLINGS)
         if at >= most or math.isinf(answer.radius):
@@ -148,14 +158,18 @@ def _where(radius: float) -> str:
 
 
 def _below(
-    model: Compiled, parts: list[Between], undamped: list[Undamped], limit: float
+    model: Compiled,
+    parts: list[Between],
+    undamped: list[Undamped],
+    limit: float,
+    told: list[float] | None = None,
 ) -> DampedRates:
-    """Find all rates of a modulus below a limit."""
+    """Find rates of a modulus below a limit: all, or what decays so that it can be told."""
     rates = Rates.of(model.scene.dampings)
     found = []
-    for (component, _, _), own in zip(parts, undamped):
+    for k, ((component, _, _), own) in enumerate(zip(parts, undamped)):
         try:
-            found.append(damped_roots(own, rates, limit))
+            found.append(damped_roots(own, rates, limit, told=None if told is None else told[k]))
         except SolveError as refusal:
             raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
     radius = min(part.radius for part in found)
@@ -164,7 +178,8 @@ def _below(
     which = np.repeat(np.arange(len(found)), [len(part.value) for part in found])
     at = np.concatenate([np.arange(len(part.value)) for part in found])
     order = np.argsort(np.abs(value), kind="stable")
-    order = order[np.abs(value[order]) < min(radius, limit)]
+    edge = min((part.radius for part in found if part.certified), default=limit)
+    order = order[np.abs(value[order]) < min(edge, limit)]
     return DampedRates(parts, found, value[order], error[order], which[order], at[order], radius)
 
 

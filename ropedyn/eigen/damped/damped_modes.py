@@ -61,9 +61,13 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]
     searched : float
         No mode with |s|/2 pi below this is missing [Hz].
     certified : bool
-        True: circles around the modes surround as many roots of the characteristic function as the
-        circle around all of them does, by the argument principle; where damping is proportional,
-        the undamped modes are certified by count.
+        Whether none is missing between them: circles around the modes surround as many roots of the
+        characteristic function as the circle around all of them does, by the argument principle;
+        where damping is proportional, the undamped modes are certified by count. False where that
+        circle meets motion that decays within so small a part of a period that rounding of the
+        scene's numbers alone decides about it, as of a dashpot of twice the rope's impedance. Then
+        a wider circle that stays away from there is searched: beyond `searched` only modes are
+        given that decay slower than `searched` times 2 pi, and those are all there.
     family : ndarray of str, shape (k,)
         "transverse", "bending rotation", "torsional" or "axial": the coordinate with the most
         kinetic energy.
@@ -141,7 +145,10 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]
         }
         if (self.plane == "y").any():
             columns["plane"] = self.plane
-        return Table.of("damped modes", columns | self._shares)
+        title = "damped modes"
+        if not self.certified:
+            title += f"; beyond {self.searched:.6g} Hz such as decay within a period may be missing"
+        return Table.of(title, columns | self._shares)
 
     def plot(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
         """Plot the real parts of the shapes of one coordinate, the first one by default."""

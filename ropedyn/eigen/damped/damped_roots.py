@@ -16,6 +16,9 @@ from .proportional import Proportional, proportional
 from .rates import Rates, elastic, horizon
 
 MARGIN = 0.98  # Motion is told apart up to this part of the horizon.
+DEPTHS = 2.0 ** (-np.arange(4) / 2)
+"""How far circles reach to the left of the imaginary axis, over what they take in on it. With less
+they are so much wider than where roots lie that these are not found."""
 NO_MIRROR, CONJUGATE, OPPOSITE = range(3)  # Where roots have another one, in the core's order.
 
 
@@ -50,18 +53,33 @@ class Damped:
     rates: Rates  # factors of the chain's parts
     value: Complex  # (k,) one of each conjugate pair, that above the real axis [rad/s]
     error: Real  # (k,) estimated absolute error [rad/s]
-    certified: bool  # whether none is missing
+    certified: bool  # whether none is missing below the radius that was asked for
     # none of a modulus below this is missing [rad/s]; infinite where there are no more
     radius: float
     sweeps: int  # what it took
     nearby: Complex  # what was found besides: the others of the pairs [rad/s]
+    circle: tuple[float, float]  # its real middle and radius: nothing is missing inside [rad/s]
     closed: Proportional | None = None  # how the damping is proportional
     # (k,) the undamped mode that each is of, where it is proportional
     mode: Index | None = None
 
 
-def damped_roots(undamped: Undamped, rates: Rates, radius: float) -> Damped:
-    """Find all rates of a chain of a modulus below some radius."""
+def untold(radius: float) -> SolveError:
+    """Return what says that rounding decides which modes there are within some radius."""
+    return SolveError(
+        f"damped modes below {radius / (2 * math.pi):.6g} Hz cannot be told from rounding: motion "
+        "decays there within a small part of a period, as before a dashpot that matches the rope's "
+        "impedance; ask for fewer modes or a lower frequency"
+    )
+
+
+def damped_roots(
+    undamped: Undamped, rates: Rates, radius: float, *, told: float | None = None
+) -> Damped:
+    """Find all rates of a chain of a modulus below some radius.
+
+    With `told`, beyond that [rad/s], or less, only what decays slower, if else rounding decides.
+    """
     chain = undamped.chain
     edge = MARGIN * horizon(chain, rates)
     closed = proportional(chain, rates)
@@ -73,7 +91,7 @@ def damped_roots(undamped: Undamped, rates: Rates, radius: float) -> Damped:
             f"rate {edge / MARGIN:.6g} 1/s, where damping cancels stiffness, infinitely many "
             "overdamped modes accumulate; ask for fewer modes or a lower frequency"
         )
-    return _searched(undamped, rates, radius, edge)
+    return _searched(undamped, rates, radius, edge, told)
 
 
 def _closed(
@@ -111,30 +129,41 @@ def _closed(
         math.inf if whole and (np.abs(s) < radius).all() else radius,
         found.work.sweeps,
         np.zeros(0, dtype=np.complex128),
+        (0.0, radius),
         closed,
         mode[order],
     )
 
 
-def _searched(undamped: Undamped, rates: Rates, radius: float, edge: float) -> Damped:
+def _searched(
+    undamped: Undamped, rates: Rates, radius: float, edge: float, told: float | None = None
+) -> Damped:
     """Search the plane; see csrc/damped/search.h."""
     chain = undamped.chain
     known = undamped.below((1.1 * radius) ** 2)
     omega = np.sqrt(np.abs(known.eigenvalue))
     guess = np.stack([1j * omega, -1j * omega], axis=1).ravel()
-    value, error, count, wide, mirror, certified, sweeps = _core.damped(
-        chain, rates.constant, rates.linear, radius, edge, edge / MARGIN, guess
-    )
-    if not certified:
-        raise SolveError(
-            f"damped modes below {radius / (2 * math.pi):.6g} Hz cannot be told from rounding: "
-            "motion decays there within a small part of a period, as before a dashpot that matches "
-            "the rope's impedance; ask for fewer modes or a lower frequency"
+    sweeps, certified = known.work.sweeps, False
+    depths = [radius] if told is None else [d for d in (radius * DEPTHS).tolist() if d <= told]
+    # circles through +-i radius and -least; the first is the one about 0
+    for least in depths:
+        middle = (radius**2 - least**2) / (2 * least)
+        if not 2 * middle + least < edge:
+            break
+        value, error, count, wide, mirror, certified, steps = _core.damped(
+            chain, rates.constant, rates.linear, middle, middle + least, edge, edge / MARGIN, guess
         )
+        sweeps += steps
+        if certified or mirror != CONJUGATE:
+            break
+    if not certified:
+        raise untold(radius)
     still = int((np.abs(known.eigenvalue) <= known.error).sum())
     value, error, nearby = _sorted(value, error, mirror, still)
-    wide = math.inf if count == most_roots(chain, rates) else wide
-    return Damped(rates, value, error, True, wide, sweeps + known.work.sweeps, nearby)
+    told = middle == 0
+    all_of_it = told and count == most_roots(chain, rates)
+    least = math.inf if all_of_it else wide - middle
+    return Damped(rates, value, error, told, least, sweeps, nearby, (middle, wide))
 
 
 def _sorted(value: Complex, error: Real, mirror: int, still: int) -> tuple[Complex, Real, Complex]:

@@ -72,7 +72,8 @@ def _room(value: Complex, group: Index, damped: Damped) -> float:
     center = value[group].mean()
     others = others[np.abs(others - center) > damped.error[group].max()]
     nearest = float(np.abs(others - center).min(initial=np.inf))
-    return min(nearest, damped.radius - abs(center))
+    middle, radius = damped.circle
+    return min(nearest, radius - abs(center - middle))
 
 
 def _probes(chain: Chain) -> Integer:
