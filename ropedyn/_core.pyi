@@ -91,8 +91,8 @@ def sensitivity(
     chain: Chain, shape: _Real, motion: _Real, eigenvalue: _Real, /
 ) -> tuple[_Real, _Real, _Real, _Real]: ...
 def recurrence(
-    change: _Real, seen: _Real, length: NDArray[np.int32], force: _Real, state: _Real, /
-) -> tuple[_Real, _Real]: ...
+    change: _Real, length: NDArray[np.int32], push: _Real, state: _Real, /
+) -> _Real: ...
 def collocate(
     step: _Step,
     laws: _SmoothLaws,

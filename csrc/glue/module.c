@@ -56,7 +56,7 @@ static PyMethodDef methods[] = {
     {"space_count", py_space_count, METH_VARARGS,
      "space_count(rope, components, eigenvalues, scale) -> counts"},
     {"recurrence", py_recurrence, METH_VARARGS,
-     "recurrence(change, seen, length, force, state) -> value, state"},
+     "recurrence(change, length, push, state) -> states"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (3, 2, f)"},
     {"pair_slopes", py_pair_slopes, METH_VARARGS,
      "pair_slopes(chain, factor, field, pair, slip) -> slopes, jumps, dyads, places of stretches"},
