@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ...base.array import Complex, Real
+from ...base.computed import computed
 from ...base.errors import SceneError, SolveError
 from ...base.unit import MOTIONS
 from ...chain.chain import Chain
@@ -47,6 +49,7 @@ MOST_NUMBERS = 1 << 22  # Lines times pairs of drives and responses, at most, li
 MOST_LINES = 1 << 19  # At most so many rates are looked at, where times resolve fewer.
 EPS = 16 * np.finfo(float).eps
 FAR = 1e4  # So many times the highest rate no mode of a chain is left: what is infinite there is.
+NEAR = np.array([1.0, 2.0, FAR, 2 * FAR])  # Modes beyond it are told apart by so many times it.
 GROWS = 2.0**0.25  # What grows by this with the rate has no bound
 STRONG = 1e-3  # where it is more than this part of the largest value.
 REACH = 4.0  # They reach so many times as far as the forces do, at first.
@@ -81,13 +84,15 @@ class Line:
 
     @classmethod
     def of(cls, run: Run, tolerance: float) -> Line:
-        """Look at as many as the times resolve, twice."""
+        """Look at as many as the times resolve, and at twice as many under blows at an instant."""
         longer, decay = next(pair for least, *pair in PERIODS if tolerance >= least)
         begin = float(run.time[0])
         loads = [Step(-load, time=begin) for load in run.loads.values()]
         forces = (*run.forces, *run.blows, *loads)
         omega = 2 * math.pi * REACH * max((f.bandwidth for f in forces), default=0.0)
-        grid = Grid.over(run.time, longer, decay, growth_of(run), omega)
+        # whose responses are not small up to where the sum ends
+        least = 2 if any(force.blows for force in forces) else 1
+        grid = Grid.over(run.time, longer, decay, growth_of(run), omega=omega, least=least)
         transfer = Transfer(run.model, tuple(run.places), run.responses)
         value = transfer.at(grid.s)
         return cls(run, transfer, forces, grid, value, _rounding(transfer, grid.s, value), decay)
@@ -104,7 +109,7 @@ class Line:
     def motion(self) -> Moved:
         """Return the motion."""
         grid, run, order = self.grid, self.run, self.run.order
-        looked = self.transfer.at(grid.omega * LOOKS)
+        looked = self._far[: len(run.places), : len(run.responses), : len(LOOKS)]
         fast = at_once(looked, grid.omega, self.value[..., 0])
         quick = response(fast, grid.s)
         force = np.stack([transform(one, grid) for one in self.forces]) * grid.s**order
@@ -125,40 +130,57 @@ class Line:
         error = TIMES * differ + rounding + alias[:, None]
         return Moved(value, error, "line", lines=grid.lines)
 
+    @property
+    def _is_chain(self) -> bool:
+        return self.run.model.element != "continuous"
+
+    @property
+    def _beyond(self) -> Complex:
+        """Rates at and beyond the highest, the last two where modes of a chain are over."""
+        beyond = [LOOKS, LOOKS[0] * NEAR, FAR * LOOKS[-2:]]
+        return self.grid.omega * np.concatenate(beyond if self._is_chain else beyond[:1])
+
+    @computed
+    def _far(self) -> Complex:
+        """The transfer functions there, and of a chain those of each point on itself, in turn."""
+        drives, asked = tuple(self.run.places), self.run.responses
+        if self._is_chain:
+            more = filter(_moves, drives)
+            drives, asked = (*drives, *filter(_moves, asked)), (*asked, *more)
+        return Transfer(self.run.model, drives, asked).at(self._beyond)
+
     def _unseen(self) -> Real:
         """Bound what modes of a chain beyond the rates do under the forces, (responses,)."""
         run, omega = self.run, self.grid.omega
         bound = np.zeros(len(run.responses))
         lag = omega * float(Rates.of(run.model.scene.dampings).linear.real[: damping.INERTIA].max())
-        if run.model.element == "continuous" or lag > DEAD or run.model.chain.spurious:
+        if not self._is_chain or lag > DEAD or run.model.chain.spurious:
             # modes of spans are dense, damped ones over at once, and some of no motion are counted
             return bound
-        own = {point: self._light(point) for point in {*run.places, *run.responses}}
-        watched = np.array([own[point] for point in run.responses])
-        for place, force in zip(run.places, self.forces):
+        pushed, watched = np.zeros(len(run.places)), np.zeros(len(run.responses))
+        for k, d in enumerate(np.flatnonzero([_moves(point) for point in run.places])):
+            pushed[d] = self._light(d, len(run.responses) + k)
+        for k, r in enumerate(np.flatnonzero([_moves(point) for point in run.responses])):
+            watched[r] = self._light(len(run.places) + k, r)
+        for light, force in zip(pushed, self.forces):
             excited = _excited(force, run.time, omega)[run.order]
-            bound += excited * omega**-2.0 * np.sqrt(own[place] * watched)
+            bound += excited * omega**-2.0 * np.sqrt(light * watched)
         return bound
 
-    def _light(self, point: Point) -> float:
+    def _light(self, drive: Any, response: Any) -> float:
         """Bound the sum of the residues of modes beyond the rates where a point is driven."""
         # s^2 H is the sum of r s^2/(s^2 + omega^2): all r far out, less x/(1 + x) of each nearer,
         # x = (omega/s)^2: two places leave x^2 of modes below, and up to 3 of those beyond
-        if is_end(point) or is_force(point) or is_tip(point):
-            return 0.0
-        s = self.grid.omega * LOOKS[0] * np.array([1.0, 2.0, FAR, 2 * FAR])
-        value = Transfer(self.run.model, (point,), (point,)).at(s)
-        near, next_, far, farther = value[0, 0] * s * s
+        s = self.grid.omega * LOOKS[0] * NEAR
+        value = self._far[drive, response, len(LOOKS) : len(LOOKS) + len(NEAR)]
+        near, next_, far, farther = value * s * s
         has_mass = abs(farther) < GROWS * abs(far)
         return float(abs(4 * next_ - near - 3 * far)) / 2 if has_mass else 0.0
 
     def refuse_infinite(self, moved: Moved) -> None:
         """Refuse by name what has no bound, as velocity where a blow at an instant hits a beam."""
-        run, omega = self.run, self.grid.omega
-        if run.model.element != "continuous":
-            omega *= FAR
-        s = omega * LOOKS[-2:]
-        far = self.transfer.at(s)
+        run, s = self.run, self._beyond[-2:]
+        far = self._far[:, : len(run.responses), -2:]
         for d, (place, force) in enumerate(zip(run.places, self.forces)):
             for more, size in enumerate(_jumps(force, run.time)):
                 reach = np.abs(far[d] * s ** (run.order + more))
@@ -191,6 +213,7 @@ class Line:
 
         grid = self.grid
         share = np.arange(grid.lines + 1) / grid.lines
+        # one by one: rounding would depend on how many are transformed together
         whole, *earlier = (
             grid.finely(smooth * np.exp(-36 * np.minimum(share / end, 2.0) ** SHARP))
             for end in (1.0, *SHARES)
@@ -206,6 +229,11 @@ class Line:
         return grid.summed(ended, since), differ[:, at]
 
 
+def _moves(point: Point) -> bool:
+    """Whether a point is one of the rope that a force would move."""
+    return not (is_end(point) or is_force(point) or is_tip(point))
+
+
 def _rounding(transfer: Transfer, s: Complex, value: Complex) -> Real:
     """Bound what rounding does to values at many rates by what it does at some of them."""
     at = np.unique(np.linspace(0, len(s) - 1, ROUNDED).astype(np.intp))
@@ -213,8 +241,9 @@ def _rounding(transfer: Transfer, s: Complex, value: Complex) -> Real:
     bound = transfer.rounding(s[at])
     share = np.divide(bound, size[..., at], out=np.zeros_like(bound), where=size[..., at] > 0)
     between = np.maximum(share[..., 1:], share[..., :-1])
-    panel = np.searchsorted(at, np.arange(len(s)), side="right") - 1
-    return np.asarray(between[..., panel.clip(0, len(at) - 2)] * size)
+    width = np.diff(at)
+    width[-1] += 1
+    return np.asarray(np.repeat(between, width, axis=-1) * size)
 
 
 def _jumps(force: Force, time: Real) -> tuple[float, float]:

@@ -137,9 +137,11 @@ def _on_grid(rate: Complex, coefficient: Complex, time: Real) -> Real:
         begin = coefficient[:, z] * np.exp(rate[z] * (time[0] + h * BLOCK * first))
         left = begin[:, :, None] * _powers(rate[z], h * BLOCK, stop - first)
         left = left.transpose(0, 2, 1)
-        left = np.concatenate([left.real, -left.imag], axis=2).reshape(-1, 2 * len(z))
+        left = np.concatenate([left.real, -left.imag], axis=2)
         right = np.concatenate([within[z].real, within[z].imag])
-        values[:, first:stop] = (left @ right).reshape(len(coefficient), stop - first, -1)
+        values[:, first:stop] = (
+            left @ right
+        )  # each response by itself: bits do not depend on others
     return values.reshape(len(coefficient), -1)[:, : len(time)]
 
 
