@@ -42,7 +42,7 @@ LAST = 8  # What is left beyond the rates is told by the last of so many parts o
 DEAD = 0.3  # Modes beyond the rates whose stiffness lags by more [rad] do not ring.
 AROUND = 4  # where they differ most within so many steps.
 SHARP = 20  # p.
-ALIAS = 4.0  # A period later motion may be so much larger.
+ALIAS = 16.0  # A period later motion may be so much larger: it may grow as a power of time.
 ROUNDING = 0.5  # Of the error that the sweep bounds, this part, by which rates do not depend,
 ROUNDED = 33  # at so many of the rates that are looked at.
 MOST_NUMBERS = 1 << 22  # Lines times pairs of drives and responses, at most, likewise.
@@ -114,8 +114,7 @@ class Line:
         quick = response(fast, grid.s)
         force = np.stack([transform(one, grid) for one in self.forces]) * grid.s**order
         smooth = np.einsum("drk,dk->rk", self.value - quick, force)
-        value, differ = self._summed(smooth)
-        largest = np.abs(value).max(axis=1, initial=0.0)
+        value, differ, largest = self._summed(smooth)
         value += self._resting()
         for d, one in enumerate(self.forces):
             value += convolve(fast, d, one, run.time, order)
@@ -207,8 +206,11 @@ class Line:
         loads = np.array(list(self.run.loads.values()))
         return np.asarray(loads @ still[-count:, :, 0].real)[:, None]
 
-    def _summed(self, smooth: Complex) -> tuple[Real, Real]:
-        """Return the sum at the times, and how far sums that end earlier are from it."""
+    def _summed(self, smooth: Complex) -> tuple[Real, Real, Real]:
+        """Return the sum at the times, how far sums that end earlier are, and its largest values.
+
+        These of the whole period: what comes after it may be much more than what the record has.
+        """
         from scipy.ndimage import maximum_filter1d
 
         grid = self.grid
@@ -220,13 +222,14 @@ class Line:
         )
         differ = np.max([np.abs(one - whole) for one in earlier], axis=0)
         differ = maximum_filter1d(differ, 2 * AROUND * grid.finer + 1, axis=-1)
+        largest = np.abs(whole).max(axis=1, initial=0.0)
         since = grid.time - grid.begin
         if grid.even:
             even = slice(0, len(since) * grid.finer, grid.finer)
-            return whole[:, even].copy(), differ[:, even].copy()
+            return whole[:, even].copy(), differ[:, even].copy(), largest
         at = np.rint(since * (2 * grid.lines / grid.period)).astype(np.intp)
         ended = smooth * np.exp(-36 * share**SHARP)
-        return grid.summed(ended, since), differ[:, at]
+        return grid.summed(ended, since), differ[:, at], largest
 
 
 def _moves(point: Point) -> bool:
