@@ -27,6 +27,7 @@ from ...response.moved_end import is_end
 from ...scene import damping
 from ...scene.force import Force, Step, is_sampled
 from ..modal.convolution import convolve
+from ..modal.expansion import Expansion
 from ..moved import Moved
 from ..request import Run
 from .at_once import LOOKS, at_once, response
@@ -42,7 +43,9 @@ LAST = 8  # What is left beyond the rates is told by the last of so many parts o
 DEAD = 0.3  # Modes beyond the rates whose stiffness lags by more [rad] do not ring.
 AROUND = 4  # where they differ most within so many steps.
 SHARP = 20  # p.
-ALIAS = 16.0  # A period later motion may be so much larger: it may grow as a power of time.
+ALIAS = 8.0  # A period later motion may be so much larger,
+GROWN = 2.0  # where it grows by at most so much after the record.
+ROUGH = 1e-3  # Else it is looked at for two periods, with this alias.
 ROUNDING = 0.5  # Of the error that the sweep bounds, this part, by which rates do not depend,
 ROUNDED = 33  # at so many of the rates that are looked at.
 MOST_NUMBERS = 1 << 22  # Lines times pairs of drives and responses, at most, likewise.
@@ -109,25 +112,30 @@ class Line:
     def motion(self) -> Moved:
         """Return the motion."""
         grid, run, order = self.grid, self.run, self.run.order
-        looked = self._far[: len(run.places), : len(run.responses), : len(LOOKS)]
-        fast = at_once(looked, grid.omega, self.value[..., 0])
-        quick = response(fast, grid.s)
-        force = np.stack([transform(one, grid) for one in self.forces]) * grid.s**order
-        smooth = np.einsum("drk,dk->rk", self.value - quick, force)
-        value, differ, largest = self._summed(smooth)
+        fast, force, smooth = self._smooth()
+        value, differ, later = self._summed(smooth)
         value += self._resting()
         for d, one in enumerate(self.forces):
             value += convolve(fast, d, one, run.time, order)
-        wrong = self.error + EPS * np.abs(quick)
+        wrong = self.error + EPS * np.abs(response(fast, grid.s))
         wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
         wrong = ROUNDING / grid.period * np.sqrt((wrong**2).sum(axis=1))
         rounding = np.multiply.outer(wrong, np.exp(grid.a * (run.time - grid.begin)))
-        alias = ALIAS * self.decay * largest
+        alias = ALIAS * self.decay * later
         # modes beyond the rates, where none is near their end, are seen by what they do there
         last = np.median(np.abs(smooth[:, -(grid.lines // LAST) :]), axis=1)
         alias += grid.omega / math.pi * last + self._unseen()
         error = TIMES * differ + rounding + alias[:, None]
         return Moved(value, error, "line", lines=grid.lines)
+
+    def _smooth(self) -> tuple[Expansion, Complex, Complex]:
+        """Return what the transfer functions do at once, the forces, and the motion without it."""
+        looked = self._far[: len(self.run.places), : len(self.run.responses), : len(LOOKS)]
+        fast = at_once(looked, self.grid.omega, self.value[..., 0])
+        force = np.stack([transform(one, self.grid) for one in self.forces])
+        force *= self.grid.s**self.run.order
+        rest = self.value - response(fast, self.grid.s)
+        return fast, force, np.einsum("drk,dk->rk", rest, force)
 
     @property
     def _is_chain(self) -> bool:
@@ -207,10 +215,7 @@ class Line:
         return np.asarray(loads @ still[-count:, :, 0].real)[:, None]
 
     def _summed(self, smooth: Complex) -> tuple[Real, Real, Real]:
-        """Return the sum at the times, how far sums that end earlier are, and its largest values.
-
-        These of the whole period: what comes after it may be much more than what the record has.
-        """
+        """Return the sum at the times, how far earlier sums are, and how large it grows."""
         from scipy.ndimage import maximum_filter1d
 
         grid = self.grid
@@ -222,14 +227,29 @@ class Line:
         )
         differ = np.max([np.abs(one - whole) for one in earlier], axis=0)
         differ = maximum_filter1d(differ, 2 * AROUND * grid.finer + 1, axis=-1)
-        largest = np.abs(whole).max(axis=1, initial=0.0)
+        later = self._later(np.abs(whole), differ)
         since = grid.time - grid.begin
         if grid.even:
             even = slice(0, len(since) * grid.finer, grid.finer)
-            return whole[:, even].copy(), differ[:, even].copy(), largest
+            return whole[:, even].copy(), differ[:, even].copy(), later
         at = np.rint(since * (2 * grid.lines / grid.period)).astype(np.intp)
         ended = smooth * np.exp(-36 * share**SHARP)
-        return grid.summed(ended, since), differ[:, at], largest
+        return grid.summed(ended, since), differ[:, at], later
+
+    def _later(self, size: Real, differ: Real) -> Real:
+        """Return how large motion becomes until a period after the record, (responses,)."""
+        grid = self.grid
+        most = size.max(axis=1, initial=0.0)
+        record = size[:, : grid.steps * grid.finer + 1].max(axis=1, initial=0.0)
+        if ((size - TIMES * differ).max(axis=1, initial=0.0) <= GROWN * record).all():
+            return most
+        # it has hardly begun, as where a wave has not arrived
+        slower = grid.a + (math.log(self.decay) - math.log(ROUGH) / 2) / grid.period
+        twice = replace(grid, count=2 * grid.count, a=slower, finer=1)
+        line = replace(self, grid=twice, value=self.transfer.at(twice.s))
+        ends = np.exp(-36 * np.linspace(0.0, 1.0, twice.lines + 1) ** SHARP)
+        after = np.abs(twice.finely(line._smooth()[2] * ends))[:, twice.lines :]
+        return np.maximum(most, after.max(axis=1))
 
 
 def _moves(point: Point) -> bool:
