@@ -1,4 +1,4 @@
-/* Modes under a force of straight lines, from time to time without error of the step. */
+/* Modes from step to step, without error of the step. */
 #ifndef RD_RECURRENCE_H
 #define RD_RECURRENCE_H
 
@@ -7,22 +7,19 @@
 
 #include "base/lanes.h"
 
-/* With q and its velocity v of each mode at the beginning of a step, force f there and f + d at its
-   end, they change by
+/* A mode's q and its velocity v change in a step by
 
-       q: c_0 q + c_1 v + c_2 f + c_3 d,    v: c_4 q + c_5 v + c_6 f + c_7 d */
-enum { RD_CHANGE = 8 };
+       q: c_0 q + c_1 v + what pushes it,    v: c_2 q + c_3 v + what pushes that */
+enum { RD_CHANGE = 4 };
 
 struct rd_recurrence {
     size_t modes;         /* a multiple of RD_LANES; those too many are 0 throughout */
-    size_t responses;     /*                                                         */
     const double *change; /* (lengths, RD_CHANGE, modes), of each length of a step   */
-    const double *seen;   /* (responses, 2, modes): a response is their sum with q, v */
 };
 
-/* length (steps) of each step, an index; force (steps + 1) [N]; state (2, modes) q and v, before and
-   after; value (responses, steps) at the end of each step */
+/* length (steps) of each step, an index; push (steps, 2, modes); states (steps + 1, 2, modes) q and v
+   before each step, of which the first is given, and after the last */
 void rd_recurrence_walk(const struct rd_recurrence *recurrence, size_t steps, const int32_t *length,
-                        const double *force, double *state, double *value);
+                        const double *push, double *states);
 
 #endif

@@ -59,7 +59,7 @@ static PyMethodDef methods[] = {
     {"space_count", py_space_count, METH_VARARGS,
      "space_count(rope, components, eigenvalues, scale) -> counts"},
     {"recurrence", py_recurrence, METH_VARARGS,
-     "recurrence(change, seen, length, force, state) -> value, state"},
+     "recurrence(change, length, push, state) -> states"},
     {"eliminate", py_eliminate, METH_VARARGS, "eliminate(A, columns): in place"},
     {"substitute", py_substitute, METH_VARARGS, "substitute(A, x): in place"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (3, 2, f)"},

@@ -1,4 +1,4 @@
-/* Modes under a force of straight lines. */
+/* Modes from step to step. */
 #include "glue/glue.h"
 
 #include <string.h>
@@ -26,46 +26,33 @@ static int check_steps(PyArrayObject *length, npy_intp lengths, npy_intp modes)
 PyObject *py_recurrence(PyObject *module, PyObject *arguments)
 {
     (void)module;
-    PyArrayObject *change = NULL, *seen = NULL, *length = NULL, *force = NULL, *before = NULL;
-    PyObject *object[5], *state = NULL, *value = NULL, *result = NULL;
-    if (!PyArg_ParseTuple(arguments, "OOOOO", object, object + 1, object + 2, object + 3,
-                          object + 4))
+    PyArrayObject *change = NULL, *length = NULL, *push = NULL, *before = NULL;
+    PyObject *object[4], *states = NULL;
+    if (!PyArg_ParseTuple(arguments, "OOOO", object, object + 1, object + 2, object + 3))
         return NULL;
     change = py_array(object[0], NPY_DOUBLE, 3, (npy_intp[]){-1, RD_CHANGE, -1}, "change");
     if (change == NULL)
         goto done;
     const npy_intp modes = PyArray_DIM(change, 2);
-    seen = py_array(object[1], NPY_DOUBLE, 3, (npy_intp[]){-1, 2, modes}, "seen");
-    length = py_array(object[2], NPY_INT32, 1, (npy_intp[]){-1}, "length");
-    if (seen == NULL || length == NULL || check_steps(length, PyArray_DIM(change, 0), modes) < 0)
+    length = py_array(object[1], NPY_INT32, 1, (npy_intp[]){-1}, "length");
+    if (length == NULL || check_steps(length, PyArray_DIM(change, 0), modes) < 0)
         goto done;
     const npy_intp steps = PyArray_DIM(length, 0);
-    force = py_array(object[3], NPY_DOUBLE, 1, (npy_intp[]){steps + 1}, "force");
-    before = force ? py_array(object[4], NPY_DOUBLE, 2, (npy_intp[]){2, modes}, "state") : NULL;
-    state = before ? py_new(NPY_DOUBLE, 2, (npy_intp[]){2, modes}) : NULL;
-    value = state ? py_new(NPY_DOUBLE, 2, (npy_intp[]){PyArray_DIM(seen, 0), steps}) : NULL;
-    if (value == NULL)
+    push = py_array(object[2], NPY_DOUBLE, 3, (npy_intp[]){steps, 2, modes}, "push");
+    before = push ? py_array(object[3], NPY_DOUBLE, 2, (npy_intp[]){2, modes}, "state") : NULL;
+    states = before ? py_new(NPY_DOUBLE, 3, (npy_intp[]){steps + 1, 2, modes}) : NULL;
+    if (states == NULL)
         goto done;
-    const struct rd_recurrence recurrence = {
-        .modes = (size_t)modes,
-        .responses = (size_t)PyArray_DIM(seen, 0),
-        .change = PyArray_DATA(change),
-        .seen = PyArray_DATA(seen),
-    };
-    double *at = PyArray_DATA((PyArrayObject *)state);
+    const struct rd_recurrence recurrence = {(size_t)modes, PyArray_DATA(change)};
+    double *at = PyArray_DATA((PyArrayObject *)states);
     memcpy(at, PyArray_DATA(before), (size_t)PyArray_NBYTES(before));
     Py_BEGIN_ALLOW_THREADS
-    rd_recurrence_walk(&recurrence, (size_t)steps, PyArray_DATA(length), PyArray_DATA(force), at,
-                       PyArray_DATA((PyArrayObject *)value));
+    rd_recurrence_walk(&recurrence, (size_t)steps, PyArray_DATA(length), PyArray_DATA(push), at);
     Py_END_ALLOW_THREADS
-    result = PyTuple_Pack(2, value, state);
 done:
-    Py_XDECREF(value);
-    Py_XDECREF(state);
     Py_XDECREF(before);
-    Py_XDECREF(force);
+    Py_XDECREF(push);
     Py_XDECREF(length);
-    Py_XDECREF(seen);
     Py_XDECREF(change);
-    return result;
+    return states;
 }

@@ -1,5 +1,6 @@
 """Linear motion by the line: random scenes against exponentials of matrices, and refusals."""
 
+import mpmath as mp
 import numpy as np
 import pytest
 from linear_case import Exact, random_case
@@ -76,6 +77,29 @@ def test_error_covers_that_of_a_thousand_random_scenes(claim):
     sample = Sample(range(10_000, 11_000))
     sample.hold()
     claim(max(sample.error))
+
+
+@pytest.mark.parametrize(
+    ("method", "span"), [("modal", 0.005), ("modal", 0.02), ("line", 0.02), ("line", 0.1)]
+)
+def test_error_covers_motion_that_has_hardly_begun(method, span):
+    # masses away from the blow move as powers of t: modes cancel, and later motion is far larger
+    model = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION).compile(elements=8, element="rigid")
+    time = np.linspace(0.0, span * 2 * LENGTH * np.sqrt(DENSITY / TENSION), 41)
+    hit, seen = (("z", float(model.x[k])) for k in (2, 4))
+    history = model.transient(time, velocity={hit: 1.0}, response=seen, method=method)
+    M, K = (one().toarray() for one in (model.mass_matrix, model.stiffness_matrix))
+    with mp.workdps(40):
+        motion = mp.matrix(14, 14)
+        for i in range(7):
+            motion[i, 7 + i] = mp.mpf(1)
+            for j in range(7):
+                motion[7 + i, j] = -mp.mpf(K[i, j]) / mp.mpf(M[i, i])
+        at = [10, 25, 40]
+        after = [mp.expm(motion * mp.mpf(time[k]), method="taylor") for k in at]
+        exact = np.array([float(one[3, 7 + 1] / mp.mpf(M[1, 1])) for one in after])
+    assert (np.abs(history.value[0, at] - exact) <= history.error[0, at]).all()
+    assert history.error.max() <= 1e-3 * np.abs(exact).max()
 
 
 @pytest.mark.parametrize("gamma", [1e-3, 3e-3])

@@ -46,12 +46,11 @@ FORCE = np.ones((NODES, WIDTH))
 SHAPES = np.ones((2, NODES, WIDTH))
 MOTIONS = np.ones((2, 2))
 MATRIX = np.array([[2.0, 1.0], [1.0, 3.0]])
-# changes of two lengths, eight modes, one response, three steps
+# changes of two lengths, eight modes, three steps
 STEPPED = (
-    np.full((2, 8, 8), 0.1),
-    np.ones((1, 2, 8)),
+    np.full((2, 4, 8), 0.1),
     np.array([0, 1, 0], np.int32),
-    np.ones(4),
+    np.ones((3, 2, 8)),
     np.ones((2, 8)),
 )
 # a step of two stages of one law in Python and one in the core, three modes, no forces before it
@@ -767,39 +766,34 @@ REFUSED = {
         r"steps must lie in 0 \.\.\. 2, got 0 to 3",
     ),
     "modes that do not fill the lanes": (
-        lambda: _core.recurrence(STEPPED[0][:, :, 1:], STEPPED[1][:, :, 1:], *STEPPED[2:]),
+        lambda: _core.recurrence(STEPPED[0][:, :, 1:], *STEPPED[1:]),
         ValueError,
         "change must have a multiple of 8 modes, got 7",
     ),
     "step of a length there is not": (
-        lambda: _core.recurrence(*STEPPED[:2], STEPPED[2] + 1, *STEPPED[3:]),
+        lambda: _core.recurrence(STEPPED[0], STEPPED[1] + 1, *STEPPED[2:]),
         ValueError,
         r"length\[1\] must be from 0 to 1, got 2",
     ),
     "step of a length below 0": (
-        lambda: _core.recurrence(*STEPPED[:2], STEPPED[2] - 1, *STEPPED[3:]),
+        lambda: _core.recurrence(STEPPED[0], STEPPED[1] - 1, *STEPPED[2:]),
         ValueError,
         r"length\[0\] must be from 0 to 1, got -1",
     ),
-    "samples too few": (
-        lambda: _core.recurrence(*STEPPED[:3], STEPPED[3][1:], STEPPED[4]),
+    "pushes too few": (
+        lambda: _core.recurrence(*STEPPED[:2], STEPPED[2][1:], STEPPED[3]),
         ValueError,
-        "force must have 4 entries along axis 0, got 3",
+        "push must have 3 entries along axis 0, got 2",
     ),
     "state of other modes": (
-        lambda: _core.recurrence(*STEPPED[:4], STEPPED[4][:, 1:]),
+        lambda: _core.recurrence(*STEPPED[:3], STEPPED[3][:, 1:]),
         ValueError,
         "state must have 8 entries along axis 1, got 7",
     ),
-    "seen of other modes": (
-        lambda: _core.recurrence(STEPPED[0], STEPPED[1][:, :, 1:], *STEPPED[2:]),
-        ValueError,
-        "seen must have 8 entries along axis 2, got 7",
-    ),
-    "changes of seven parts": (
+    "changes of three parts": (
         lambda: _core.recurrence(STEPPED[0][:, 1:], *STEPPED[1:]),
         ValueError,
-        "change must have 8 entries along axis 1, got 7",
+        "change must have 4 entries along axis 1, got 3",
     ),
     "spans of no length": (
         lambda: _core.divide(DIVIDED[0][::-1], *DIVIDED[1:]),

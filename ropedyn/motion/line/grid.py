@@ -33,15 +33,17 @@ class Grid:
     time: Real  # (t,) when motion is asked for [s]
     even: bool  # whether in equal steps
     steps: int  # of equal length, that the record has
-    count: int  # and the period
+    count: int  # and the period: an even number
     a: float  # [1/s]
     finer: int  # lines reach so many times as far as these steps resolve
 
     @classmethod
-    def over(cls, time: Real, longer: float, decay: float, growth: float, omega: float) -> Grid:
+    def over(
+        cls, time: Real, longer: float, decay: float, growth: float, *, omega: float, least: int
+    ) -> Grid:
         """Return one of a period so much longer than the record, e^(-a P) = decay but for growth.
 
-        Its lines reach twice as far as the times resolve, and up to an angular frequency.
+        Its lines reach `least` times as far as the times resolve, and up to an angular frequency.
         """
         from scipy.fft import next_fast_len
 
@@ -50,11 +52,11 @@ class Grid:
         even = is_even(time)
         if not even:
             steps = max(steps, LEAST)
-        count = next_fast_len(math.ceil(longer * (steps + 1)), real=True)
+        count = 2 * next_fast_len(math.ceil(longer * (steps + 1) / 2), real=True)
         a = growth - math.log(decay) * steps / (count * span)
         resolved = math.pi * steps / span
-        finer = max(2, math.ceil(min(omega / resolved, FINEST)), math.ceil(2 * LEAST / count))
-        return cls(time, even, steps, count, a, finer + finer % 2)
+        finer = max(least, math.ceil(min(omega / resolved, FINEST)), math.ceil(2 * LEAST / count))
+        return cls(time, even, steps, count, a, finer)
 
     @property
     def begin(self) -> float:

@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ...base.array import Complex, Real
+from ...base.computed import computed
 from ...base.errors import SceneError, SolveError
 from ...base.unit import MOTIONS
 from ...chain.port import Point, is_force
@@ -23,6 +25,7 @@ from ...response.moved_end import is_end
 from ...scene import damping
 from ...scene.force import Force, Step, is_sampled
 from ..modal.convolution import convolve
+from ..modal.expansion import Expansion
 from ..moved import Moved
 from ..request import Run
 from .at_once import LOOKS, at_once, response
@@ -38,12 +41,15 @@ LAST = 8  # What is left beyond the rates is told by the last of so many parts o
 DEAD = 0.3  # Modes beyond the rates whose stiffness lags by more [rad] do not ring.
 AROUND = 4  # where they differ most within so many steps.
 SHARP = 20  # p.
-ALIAS = 4.0  # A period later motion may be so much larger.
+ALIAS = 8.0  # A period later motion may be so much larger,
+GROWN = 2.0  # where it grows by at most so much after the record.
+ROUGH = 1e-3  # Else it is looked at for two periods, with this alias.
 ROUNDING = 0.5  # Of the error that the sweep bounds, this part, by which rates do not depend,
 ROUNDED = 33  # at so many of the rates that are looked at.
 MOST_NUMBERS = 1 << 22  # Lines times pairs of drives and responses, at most, likewise.
 EPS = 16 * np.finfo(float).eps
 FAR = 1e4  # So many times the highest rate no mode of a chain is left: what is infinite there is.
+NEAR = np.array([1.0, 2.0, FAR, 2 * FAR])  # Modes beyond it are told apart by so many times it.
 GROWS = 2.0**0.25  # What grows by this with the rate has no bound
 STRONG = 1e-3  # where it is more than this part of the largest value.
 REACH = 4.0  # They reach so many times as far as the forces do, at first.
@@ -79,14 +85,16 @@ class Line:
 
     @classmethod
     def of(cls, run: Run, tolerance: float) -> Line:
-        """Look at as many as the times resolve, twice."""
+        """Look at as many as the times resolve, and at twice as many under blows at an instant."""
         longer, decay = next(pair for least, *pair in PERIODS if tolerance >= least)
         begin = float(run.time[0])
         loads = [Step(-load, time=begin) for load in run.loads.values()]
         forces = (*run.forces, *run.blows, *loads)
         omega = 2 * math.pi * REACH * max((f.bandwidth for f in forces), default=0.0)
+        # whose responses are not small up to where the sum ends
+        least = 2 if any(force.blows for force in forces) else 1
         transfer = run.look(tuple(run.places), run.responses)
-        grid = Grid.over(run.time, longer, decay, transfer.growth, omega)
+        grid = Grid.over(run.time, longer, decay, transfer.growth, omega=omega, least=least)
         value = transfer.at(grid.s)
         return cls(run, transfer, forces, grid, value, _rounding(transfer, grid.s, value), decay)
 
@@ -102,61 +110,82 @@ class Line:
     def motion(self) -> Moved:
         """Return the motion."""
         grid, run, order = self.grid, self.run, self.run.order
-        looked = self.transfer.at(grid.omega * LOOKS)
-        fast = at_once(looked, grid.omega, self.value[..., 0])
-        quick = response(fast, grid.s)
-        force = np.stack([transform(one, grid) for one in self.forces]) * grid.s**order
-        smooth = np.einsum("drk,dk->rk", self.value - quick, force)
-        value, differ = self._summed(smooth)
-        largest = np.abs(value).max(axis=1, initial=0.0)
+        fast, force, smooth = self._smooth()
+        value, differ, later = self._summed(smooth)
         value += self._resting()
         for d, one in enumerate(self.forces):
             value += convolve(fast, d, one, run.time, order)
-        wrong = self.error + EPS * np.abs(quick)
+        wrong = self.error + EPS * np.abs(response(fast, grid.s))
         wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
         wrong = ROUNDING / grid.period * np.sqrt((wrong**2).sum(axis=1))
         rounding = np.multiply.outer(wrong, np.exp(grid.a * (run.time - grid.begin)))
-        alias = ALIAS * self.decay * largest
+        alias = ALIAS * self.decay * later
         # modes beyond the rates, where none is near their end, are seen by what they do there
         last = np.median(np.abs(smooth[:, -(grid.lines // LAST) :]), axis=1)
         alias += grid.omega / math.pi * last + self._unseen()
         error = TIMES * differ + rounding + alias[:, None]
         return Moved(value, error, "line", lines=grid.lines)
 
+    def _smooth(self) -> tuple[Expansion, Complex, Complex]:
+        """Return what the transfer functions do at once, the forces, and the motion without it."""
+        looked = self._far[: len(self.run.places), : len(self.run.responses), : len(LOOKS)]
+        fast = at_once(looked, self.grid.omega, self.value[..., 0])
+        force = np.stack([transform(one, self.grid) for one in self.forces])
+        force *= self.grid.s**self.run.order
+        rest = self.value - response(fast, self.grid.s)
+        return fast, force, np.einsum("drk,dk->rk", rest, force)
+
+    @property
+    def _is_chain(self) -> bool:
+        return self.run.model.element != "continuous"
+
+    @property
+    def _beyond(self) -> Complex:
+        """Rates at and beyond the highest, the last two where modes of a chain are over."""
+        beyond = [LOOKS, LOOKS[0] * NEAR, FAR * LOOKS[-2:]]
+        return self.grid.omega * np.concatenate(beyond if self._is_chain else beyond[:1])
+
+    @computed
+    def _far(self) -> Complex:
+        """The transfer functions there, and of a chain those of each point on itself, in turn."""
+        drives, asked = tuple(self.run.places), self.run.responses
+        if self._is_chain:
+            more = filter(_moves, drives)
+            drives, asked = (*drives, *filter(_moves, asked)), (*asked, *more)
+        return self.run.look(drives, asked).at(self._beyond)
+
     def _unseen(self) -> Real:
         """Bound what modes of a chain beyond the rates do under the forces, (responses,)."""
         run, omega = self.run, self.grid.omega
         bound = np.zeros(len(run.responses))
         lag = omega * float(Rates.of(run.model.scene.dampings).linear.real[: damping.INERTIA].max())
-        if run.model.element == "continuous" or lag > DEAD or run.model.chain.spurious:
+        if not self._is_chain or lag > DEAD or run.model.chain.spurious:
             # modes of spans are dense, damped ones over at once, and some of no motion are counted
             return bound
-        own = {point: self._light(point) for point in {*run.places, *run.responses}}
-        watched = np.array([own[point] for point in run.responses])
-        for place, force in zip(run.places, self.forces):
+        pushed, watched = np.zeros(len(run.places)), np.zeros(len(run.responses))
+        for k, d in enumerate(np.flatnonzero([_moves(point) for point in run.places])):
+            pushed[d] = self._light(d, len(run.responses) + k)
+        for k, r in enumerate(np.flatnonzero([_moves(point) for point in run.responses])):
+            watched[r] = self._light(len(run.places) + k, r)
+        for light, force in zip(pushed, self.forces):
             excited = _excited(force, run.time, omega)[run.order]
-            bound += excited * omega**-2.0 * np.sqrt(own[place] * watched)
+            bound += excited * omega**-2.0 * np.sqrt(light * watched)
         return bound
 
-    def _light(self, point: Point) -> float:
+    def _light(self, drive: Any, response: Any) -> float:
         """Bound the sum of the residues of modes beyond the rates where a point is driven."""
         # s^2 H is the sum of r s^2/(s^2 + omega^2): all r far out, less x/(1 + x) of each nearer,
         # x = (omega/s)^2: two places leave x^2 of modes below, and up to 3 of those beyond
-        if is_end(point) or is_force(point) or is_tip(point):
-            return 0.0
-        s = self.grid.omega * LOOKS[0] * np.array([1.0, 2.0, FAR, 2 * FAR])
-        value = self.run.look((point,), (point,)).at(s)
-        near, next_, far, farther = value[0, 0] * s * s
+        s = self.grid.omega * LOOKS[0] * NEAR
+        value = self._far[drive, response, len(LOOKS) : len(LOOKS) + len(NEAR)]
+        near, next_, far, farther = value * s * s
         has_mass = abs(farther) < GROWS * abs(far)
         return float(abs(4 * next_ - near - 3 * far)) / 2 if has_mass else 0.0
 
     def refuse_infinite(self, moved: Moved) -> None:
         """Refuse by name what has no bound, as velocity where a blow at an instant hits a beam."""
-        run, omega = self.run, self.grid.omega
-        if run.model.element != "continuous":
-            omega *= FAR
-        s = omega * LOOKS[-2:]
-        far = self.transfer.at(s)
+        run, s = self.run, self._beyond[-2:]
+        far = self._far[:, : len(run.responses), -2:]
         for d, (place, force) in enumerate(zip(run.places, self.forces)):
             for more, size in enumerate(_jumps(force, run.time)):
                 reach = np.abs(far[d] * s ** (run.order + more))
@@ -183,12 +212,13 @@ class Line:
         loads = np.array(list(self.run.loads.values()))
         return np.asarray(loads @ still[-count:, :, 0].real)[:, None]
 
-    def _summed(self, smooth: Complex) -> tuple[Real, Real]:
-        """Return the sum at the times, and how far sums that end earlier are from it."""
+    def _summed(self, smooth: Complex) -> tuple[Real, Real, Real]:
+        """Return the sum at the times, how far earlier sums are, and how large it grows."""
         from scipy.ndimage import maximum_filter1d
 
         grid = self.grid
         share = np.arange(grid.lines + 1) / grid.lines
+        # one by one: rounding would depend on how many are transformed together
         whole, *earlier = (
             grid.finely(smooth * np.exp(-36 * np.minimum(share / end, 2.0) ** SHARP))
             for end in (1.0, *SHARES)
@@ -198,13 +228,34 @@ class Line:
         steps = AROUND * min(1.0, grid.steps / LEAST)
         around = max(2 * AROUND, math.ceil(steps * grid.finer))
         differ = maximum_filter1d(differ, 2 * around + 1, axis=-1)
+        later = self._later(np.abs(whole), differ)
         since = grid.time - grid.begin
         if grid.even:
             even = slice(0, len(since) * grid.finer, grid.finer)
-            return whole[:, even].copy(), differ[:, even].copy()
+            return whole[:, even].copy(), differ[:, even].copy(), later
         at = np.rint(since * (2 * grid.lines / grid.period)).astype(np.intp)
         ended = smooth * np.exp(-36 * share**SHARP)
-        return grid.summed(ended, since), differ[:, at]
+        return grid.summed(ended, since), differ[:, at], later
+
+    def _later(self, size: Real, differ: Real) -> Real:
+        """Return how large motion becomes until a period after the record, (responses,)."""
+        grid = self.grid
+        most = size.max(axis=1, initial=0.0)
+        record = size[:, : grid.steps * grid.finer + 1].max(axis=1, initial=0.0)
+        if ((size - TIMES * differ).max(axis=1, initial=0.0) <= GROWN * record).all():
+            return most
+        # it has hardly begun, as where a wave has not arrived
+        slower = grid.a + (math.log(self.decay) - math.log(ROUGH) / 2) / grid.period
+        twice = replace(grid, count=2 * grid.count, a=slower, finer=1)
+        line = replace(self, grid=twice, value=self.transfer.at(twice.s))
+        ends = np.exp(-36 * np.linspace(0.0, 1.0, twice.lines + 1) ** SHARP)
+        after = np.abs(twice.finely(line._smooth()[2] * ends))[:, twice.lines :]
+        return np.maximum(most, after.max(axis=1))
+
+
+def _moves(point: Point) -> bool:
+    """Whether a point is one of the rope that a force would move."""
+    return not (is_end(point) or is_force(point) or is_tip(point))
 
 
 def _rounding(transfer: Look, s: Complex, value: Complex) -> Real:
@@ -214,8 +265,9 @@ def _rounding(transfer: Look, s: Complex, value: Complex) -> Real:
     bound = transfer.rounding(s[at])
     share = np.divide(bound, size[..., at], out=np.zeros_like(bound), where=size[..., at] > 0)
     between = np.maximum(share[..., 1:], share[..., :-1])
-    panel = np.searchsorted(at, np.arange(len(s)), side="right") - 1
-    return np.asarray(between[..., panel.clip(0, len(at) - 2)] * size)
+    width = np.diff(at)
+    width[-1] += 1
+    return np.asarray(np.repeat(between, width, axis=-1) * size)
 
 
 def _jumps(force: Force, time: Real) -> tuple[float, float]:

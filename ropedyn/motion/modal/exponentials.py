@@ -15,7 +15,7 @@ Value = TypeVar("Value", Real, Complex)
 Numerator = Callable[[Complex, Index], Complex]
 
 BLOCK = 128
-"""Powers of so many times are tabled: n of a grid need BLOCK + n/BLOCK exponentials of a rate."""
+"""Powers of so many times are tabled, and of the blocks of them: n of a grid are n products."""
 SHARES = tuple(2**k for k in range(2, 40))
 """From these blocks on terms that have decayed are left out."""
 NOTHING = 1e-20  # A term has decayed when it is less than this part of the largest one at first.
@@ -127,20 +127,30 @@ def _on_grid(rate: Complex, coefficient: Complex, time: Real) -> Real:
     # terms leave from the block on in which they have decayed to nothing
     h = (time[-1] - time[0]) / (len(time) - 1)
     blocks = -(-len(time) // BLOCK)
-    within = np.exp(np.multiply.outer(rate, h * np.arange(min(BLOCK, len(time)))))
+    within = _powers(rate, h, min(BLOCK, len(time)))
     last = _lasts(rate, coefficient, time, h * BLOCK)
     values = np.zeros((len(coefficient), blocks, within.shape[1]))
     for first, stop in pairwise(np.unique(np.minimum([0, *SHARES, blocks], blocks)).tolist()):
         z = np.flatnonzero(last >= first)
         if len(z) == 0:
             break
-        begin = time[0] + h * BLOCK * np.arange(first, stop)
-        left = coefficient[:, z, None] * np.exp(np.multiply.outer(rate[z], begin))
+        begin = coefficient[:, z] * np.exp(rate[z] * (time[0] + h * BLOCK * first))
+        left = begin[:, :, None] * _powers(rate[z], h * BLOCK, stop - first)
         left = left.transpose(0, 2, 1)
-        left = np.concatenate([left.real, -left.imag], axis=2).reshape(-1, 2 * len(z))
+        left = np.concatenate([left.real, -left.imag], axis=2)
         right = np.concatenate([within[z].real, within[z].imag])
-        values[:, first:stop] = (left @ right).reshape(len(coefficient), stop - first, -1)
+        values[:, first:stop] = (
+            left @ right
+        )  # each response by itself: bits do not depend on others
     return values.reshape(len(coefficient), -1)[:, : len(time)]
+
+
+def _powers(rate: Complex, step: float, count: int) -> Complex:
+    """Return e^(rate step n), n < count, shape (j, count), as products of few exponentials."""
+    low = math.isqrt(count - 1) + 1
+    near = np.exp(np.multiply.outer(rate, step * np.arange(low)))
+    far = np.exp(np.multiply.outer(rate, step * low * np.arange(-(-count // low))))
+    return (far[:, :, None] * near[:, None]).reshape(len(rate), -1)[:, :count]
 
 
 def _lasts(rate: Complex, coefficient: Complex, time: Real, block: float) -> Real:

@@ -11,7 +11,10 @@ from ...base.array import Real
 from ...scene.force import Samples
 from .exponentials import Oscillators, is_uniform, ramp, rates
 
-STEPS = 2048  # The core takes so many steps in one call: a look for Ctrl-C every millisecond.
+SLICE = 256  # The core takes so many blocks in one call: a look for Ctrl-C every millisecond.
+BLOCK = 32  # Even steps are taken so many at a time; between them states are not needed.
+FREE, HELD, RAMP = [0, 1, 4, 5], [2, 6], [3, 7]
+"""Changes by the state, under the force at the beginning, and under what it grows by."""
 LANES = 8  # Modes of the core come in multiples of this.
 SHORT = 1.5  # Taylor's series gives the change up to this rate times step,
 TERMS = 30  # by so many terms.
@@ -29,31 +32,73 @@ def straight_lines(modes: Oscillators, rest: Real, force: Samples, time: Real, o
     for k in range(order):
         modes, direct = modes.derivative()
         value = value + direct[:, None] * followed[order - 1 - k]
-    value[:, 1:] += _followed(modes, grid, sample)
+    value += _followed(modes, grid, sample)
     return value if len(grid) == len(time) else value[:, np.searchsorted(grid, time)]
 
 
 def _followed(modes: Oscillators, grid: Real, sample: Real) -> Real:
-    """Return a q + b q' at all times but the first."""
+    """Return a q + b q' at all times."""
     spare = -len(modes.sigma) % LANES
     wide = Oscillators(*(np.pad(each, [(0, 0)] * (each.ndim - 1) + [(0, spare)]) for each in modes))
-    seen = np.ascontiguousarray(np.stack([wide.a, wide.b], axis=1))
-    state = np.zeros((2, len(wide.sigma)))
-    h, uniform = np.diff(grid), is_uniform(grid)
-    if uniform:
-        h[:] = (grid[-1] - grid[0]) / len(h)
-    value = []
-    known, change = np.zeros(0), np.zeros(0)
-    for first in range(0, len(h), STEPS):
-        now = h[first : first + STEPS]
-        lengths, which = now[:1], np.zeros(len(now), dtype=np.intp)
-        if not uniform:
-            lengths, which = np.unique(now, return_inverse=True)
-        if not np.array_equal(lengths, known):
-            known, change = lengths, changes(wide.sigma, wide.square, lengths)
-        force = sample[first : first + STEPS + 1]
-        part, state = _core.recurrence(change, seen, which.astype(np.int32), force, state)
-        value.append(part)
+    if is_uniform(grid):
+        return _in_blocks(wide, (grid[-1] - grid[0]) / (len(grid) - 1), sample)
+    return _step_by_step(wide, np.diff(grid), sample)
+
+
+def _in_blocks(modes: Oscillators, h: float, sample: Real) -> Real:
+    """Follow even steps: only the state at the beginning of each block goes on to the next.
+
+    Within a block a force is what it is at the beginning, f, and a change c_i of its slope times h
+    at the i-th sample. With S, P, R as in `changes` that adds at the m-th sample
+
+        q: P_m f + sum_i R_(m-i) c_i/h,    v: S_m f + sum_i P_(m-i) c_i/h
+
+    to the free motion, in which the same P and S balance a force at rest to the last digit.
+    """
+    size = min(BLOCK, len(sample))
+    blocks = -(-len(sample) // size)
+    padded = np.append(sample, np.full(blocks * size + 1 - len(sample), sample[-1]))
+    force = np.lib.stride_tricks.sliding_window_view(padded, size + 1)[::size]
+    slope = np.diff(force, axis=1)
+    given = np.concatenate([force[:, :1], slope[:, :1], np.diff(slope, axis=1)], axis=1)
+    count = np.arange(1, size + 1)
+    part = changes(modes.sigma, modes.square, h * count)
+    change = np.ascontiguousarray(part[-1:, FREE])
+    held, grown = part[:, HELD], part[:, RAMP] * count[:, None, None]
+    gain = np.concatenate([held[-1:], grown[::-1]]).reshape(size + 1, -1)
+    seen = np.stack([modes.a, modes.b], axis=1)
+    free = part[:-1, FREE].reshape(size - 1, 2, 2, -1)
+    read = np.concatenate([seen[None], seen + np.einsum("rck,mcdk->mrdk", seen, free)])
+    local = np.zeros((len(seen), size + 1, size))
+    local[:, 0, 1:] = np.einsum("rck,mck->rm", seen, held[:-1])
+    ramps = np.einsum("rck,mck->rm", seen, grown)
+    for m in range(1, size):
+        local[:, 1 : m + 1, m] = ramps[:, m - 1 :: -1]
+    read = read.reshape(size, len(seen), -1)
+    state, value = np.zeros((2, len(modes.sigma))), []
+    for begin in range(0, blocks, SLICE):
+        now = given[begin : begin + SLICE]
+        push = (now @ gain).reshape(len(now), *state.shape)
+        states = _core.recurrence(change, np.zeros(len(now), dtype=np.int32), push, state)
+        before, state = states[:-1].reshape(len(now), -1), states[-1]
+        each = [before @ read[:, r].T + now @ local[r] for r in range(len(seen))]
+        value.append(np.stack([one.ravel() for one in each]))
+    return np.concatenate(value, axis=1)[:, : len(sample)]
+
+
+def _step_by_step(modes: Oscillators, h: Real, sample: Real) -> Real:
+    """Follow steps of any lengths."""
+    state, value = np.zeros((2, len(modes.sigma))), [np.zeros((len(modes.a), 1))]
+    for begin in range(0, len(h), SLICE):
+        lengths, which = np.unique(h[begin : begin + SLICE], return_inverse=True)
+        part = changes(modes.sigma, modes.square, lengths)
+        force = sample[begin : begin + SLICE + 1]
+        push = part[which][:, HELD] * force[:-1, None, None]
+        push += part[which][:, RAMP] * np.diff(force)[:, None, None]
+        change = np.ascontiguousarray(part[:, FREE])
+        states = _core.recurrence(change, which.astype(np.int32), push, state)
+        after, state = states[1:], states[-1]
+        value.append(modes.a @ after[:, 0].T + modes.b @ after[:, 1].T)
     return np.concatenate(value, axis=1)
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.array import Real
+from ...scene.force import Force
 from ..moved import Moved
 from ..request import Run
 from .convolution import motion_under
@@ -87,4 +88,46 @@ def _rounding(run: Run, shares: tuple[Share, ...], value: Real) -> Real:
     square = np.concatenate([np.abs(share.expansion.square) for share in shares] or [np.zeros(1)])
     turns = math.sqrt(float(square.max(initial=0.0))) * (run.time - run.time[0])
     most = np.abs(value).max(axis=1, initial=0.0)
-    return np.multiply.outer(most, RESIDUES + PHASES * turns)
+    # where modes cancel, as until a wave arrives, they round by what each of them is
+    return RESIDUES * np.maximum(most, _sizes(run, shares))[:, None] + PHASES * np.multiply.outer(
+        most, turns
+    )
+
+
+def _sizes(run: Run, shares: tuple[Share, ...]) -> Real:
+    """Return how large modes are without their signs, off resonance, (responses,)."""
+    size = np.zeros(len(run.responses))
+    for share in shares:
+        modes = share.expansion
+        for k, d in enumerate(share.drive):
+            push, blow = peak(run.pushes[d], run.time)
+            each = [
+                push * _reach(modes.square, run, run.order + n, 2)
+                + blow * _reach(modes.square, run, run.order + n, 1)
+                for n in range(2)
+            ]
+            size[share.response] += np.abs(modes.a[k]) @ each[0] + np.abs(modes.b[k]) @ each[1]
+    return size
+
+
+def _reach(square: Real, run: Run, order: int, smooth: int) -> Real:
+    """Return how far a derivative of modes goes: 2 omega^(order - smooth), less for short times.
+
+    Under a force of 1, with smooth = 2, or after a blow of 1, with smooth = 1.
+    """
+    left = smooth - order
+    omega, span = np.sqrt(np.abs(square)), float(run.time[-1] - run.time[0])
+    with np.errstate(divide="ignore"):
+        far = 2 * omega**-left
+    return np.asarray(np.minimum(far, span**left) if left >= 0 else far)
+
+
+def peak(push: Force | float, time: Real) -> tuple[float, float]:
+    """Return the largest value of what pushes while it is followed, and its blows together."""
+    if isinstance(push, float):
+        return abs(push), 0.0
+    begin, end = float(time[0]), float(time[-1])
+    breaks = [begin, *(at for at in push.breaks if begin < at < end), end]
+    looks = np.concatenate([time, (np.array(breaks[1:]) + np.array(breaks[:-1])) / 2])
+    blows = sum(abs(size) for at, size in push.blows if begin <= at <= end)
+    return float(np.abs(push.value(looks)).max()), float(blows)

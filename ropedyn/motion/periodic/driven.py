@@ -152,6 +152,13 @@ class Driven:
         size = float(np.abs(H).max()) * self.asked.amplitude or 1.0
         return size * np.linspace(0.3, 1.0, len(SHARES))
 
+    @computed
+    def size(self) -> float:
+        """How much points move at the mean frequency without what is not linear."""
+        omega = 2 * np.pi * float(self.asked.frequency.mean())
+        H = self.transfer.at(np.array([omega]))[0, : len(self.points), -1]
+        return float(np.linalg.norm(H)) * self.asked.amplitude / 2
+
     def linear_motion(self, balance: HarmonicBalance, omega: float) -> Real:
         """Return the motion of the points without what is not linear."""
         H = balance.transfer.at(balance.order * omega)[:, : balance.points, -1]

@@ -50,9 +50,8 @@ def by_frequency(driven: Driven, balance: HarmonicBalance) -> Branch:
         return about.gap, about.jacobian, about.slope
 
     omega = 2 * np.pi * float(driven.asked.frequency.mean()) / balance.turn
-    size = float(np.linalg.norm(driven.linear_motion(balance, omega)))
     nowhere = Place(np.zeros(0), omega, np.zeros(0), 0.0)
-    return Branch(linearise, nowhere, SCALE * omega, SMALL * size)
+    return Branch(linearise, nowhere, SCALE * omega, SMALL * driven.size)
 
 
 def settled(driven: Driven, state: SteadyState, least: int = 0) -> SteadyState | None:
