@@ -261,5 +261,5 @@ def _refuse_driven(chain: Chain, rates: Rates) -> None:
     if spring > 0 and pushes and not section == tension == spring:
         raise SceneError(
             "a spring's stiffness must be > 0 beside stiffness damping, which drives where it "
-            'pushes away, got less; method "direct" takes it'
+            "pushes away, got less"
         )
