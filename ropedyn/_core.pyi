@@ -119,63 +119,18 @@ def volterra(
     until: int,
     /,
 ) -> tuple[int, float, _Failure | None]: ...
-def march_factor(
-    chain: Chain, beside: _Beside, law: _Law, theta: float, extra: float, /
-) -> _Plan: ...
-def march(
-    chain: Chain,
-    beside: _Beside,
-    law: _Law,
-    plan: _Plan,
-    g: float,
-    h: float,
-    state: _State,
-    drive: _Ports,
+def modal_steps(
+    step: tuple[float, float, _Real, _Real],
+    laws: tuple[_Integers, _Real, _SmoothCalls],
+    coupling: tuple[_Real, _Real, _Real | None, _Real, float],
+    known: _Real,
+    state: _Real,
+    pushed: _Real,
     force: _Real,
-    moved: _Integers,
-    speed: _Real,
-    extra: _Real | None,
-    response: _Ports,
-    energies: bool,
-    refined: bool,
+    largest: _Real,
+    size: _Real,
     /,
-) -> tuple[_Real, _Real, _Real, int, float]: ...
-def march_stage(
-    chain: Chain,
-    beside: _Beside,
-    law: _Law,
-    plan: _Plan,
-    g: float,
-    h: float,
-    state: _State,
-    stage: int,
-    drive: _Ports,
-    force: _Real,
-    moved: _Integers,
-    speed: _Real,
-    /,
-) -> tuple[_Real, _Real, _Real]: ...
-def march_laws(
-    law: tuple[_Integers, _Real],
-    theta: float,
-    increment: _Real,
-    compliance: _Real,
-    start: _Real,
-    force: _Real,
-    /,
-) -> tuple[_Real, float]: ...
-def march_finish(
-    chain: Chain,
-    beside: _Beside,
-    law: _Law,
-    plan: _Plan,
-    g: float,
-    h: float,
-    state: _State,
-    stage: int,
-    force: _Real,
-    /,
-) -> None: ...
+) -> tuple[int, float, _Failure | None]: ...
 def closed_modes(
     kind: str, number: _Real, jacobian: _Real | None, modes: int, /
 ) -> tuple[_Real, _Real, _Real | None, NDArray[np.bool_]]: ...

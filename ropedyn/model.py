@@ -328,9 +328,7 @@ class Model(Compiled):
         velocity: Any = None,
         method: str = "auto",
         modes: int | None = None,
-        step: float | None = None,
         tolerance: float | None = None,
-        spectral_radius: float = 1.0,
         snapshots: ArrayLike | None = None,
         progress: Progress = None,
         partial: bool = False,
@@ -355,25 +353,19 @@ class Model(Compiled):
             what is not linear; or the shape, a function of x [m] for z, or {coordinate: function}.
         velocity : mapping from points to float, or function, optional
             Impulses at the first time [N s, N m s], or the velocity as `start` gives the shape.
-        method : {"auto", "modal", "line", "events", "direct"}
+        method : {"auto", "modal", "line", "events"}
             ``"modal"``: the sum over modes, each exact, where damping does not couple them.
             ``"line"``: exact transfer functions inverted, for any damping. ``"events"``: stops and
-            friction, in closed form between events. ``"direct"``: chains, linear or not, an
-            implicit scheme of second order (csrc/march/form/march.h). ``"auto"``: modal, else the
-            line; of what is not linear events, collocation or Volterra's equation, or direct.
+            friction, in closed form between events. ``"auto"``: modal, else the line; of what is
+            not linear events, collocation, Volterra's equation, or steps of all modes of a chain
+            where laws act beside a tension that varies.
         modes : int, optional
             Of each component, that the modal method sums; where left out all of a chain of at most
             1000 unknowns, else those below eight times what force and times resolve, from 64 to
             400.
-        step : float, optional
-            Of the direct method [s], at most.
         tolerance : float, optional
             Part of each response's largest value that errors keep to (`History.total_error` adds
-            that of elements); 1e-3, of steps 1e-4, with `modes` given any.
-        spectral_radius : float
-            Of the direct method at infinite frequency, from 0 to 1: 1 keeps the energy of undamped
-            motion (with a given `step` to the last digits), less takes it from frequencies that the
-            steps do not resolve; so do velocities at a `Stop` or where friction holds alternate.
+            that of elements); 1e-3, of linear motion with `modes` given any.
         snapshots : array_like, optional
             When the displacement of the whole rope is kept [s].
         progress : None, True or callable
@@ -398,10 +390,9 @@ class Model(Compiled):
 
         Notes
         -----
-        The direct method lumps all inertia of a chain at its nodes: tensed elements are of second
-        order in it. What has no inertia follows forces at once (rotations of a rope without rotary
-        inertia, driven points between nodes); accelerations there under a force are refused. A
-        law of a `NodeForce` that raises ends the run; its exception says for which part and when.
+        A tension that varies is followed in chains, at points whose motion their modes tell: not
+        internal forces, moved ends, or forces on coordinates without inertia. A law of a
+        `NodeForce` that raises ends the run; its exception says for which part and when.
 
         Examples
         --------
@@ -414,8 +405,8 @@ class Model(Compiled):
         """
         asked: Any = {"drive": drive, "force": force, "response": response, "quantity": quantity}
         asked |= {"start": start, "velocity": velocity, "snapshots": snapshots}
-        asked |= {"method": method, "modes": modes, "step": step, "tolerance": tolerance}
-        asked |= {"spectral_radius": spectral_radius, "partial": partial, "progress": progress}
+        asked |= {"method": method, "modes": modes, "tolerance": tolerance}
+        asked |= {"partial": partial, "progress": progress}
         refuse_rubbing(self, "over time it is a hysteresis along the whole rope; its steady motion")
         run = Run.of(self, time, **asked)
         return turned(run, follow_motion)

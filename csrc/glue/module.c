@@ -75,18 +75,9 @@ static PyMethodDef methods[] = {
     {"volterra", py_volterra, METH_VARARGS,
      "volterra(laws, begin, h, kernel, linear, force, motion, size, first, until) -> steps made, "
      "residual, failure; force, motion and size go on in place"},
-    {"march_factor", py_march_factor, METH_VARARGS,
-     "march_factor(chain, beside, law, theta, extra) -> plan"},
-    {"march", py_march, METH_VARARGS,
-     "march(chain, beside, law, plan, g, h, state, drive, force, moved, speed, extra, response, "
-     "energies, refined) -> read, energy, taken, steps made, residual"},
-    {"march_stage", py_march_stage, METH_VARARGS,
-     "march_stage(chain, beside, law, plan, g, h, state, stage, drive, force, moved, speed) -> "
-     "increments of the laws' points, per force, where they were"},
-    {"march_laws", py_march_laws, METH_VARARGS,
-     "march_laws(law, theta, increment, compliance, start, force) -> force, residual"},
-    {"march_finish", py_march_finish, METH_VARARGS,
-     "march_finish(chain, beside, law, plan, g, h, state, stage, force)"},
+    {"modal_steps", py_modal_steps, METH_VARARGS,
+     "modal_steps(step, laws, coupling, known, state, pushed, force, largest, size) -> steps made, "
+     "residual, failure"},
     {"closed_modes", py_closed_modes, METH_VARARGS,
      "closed_modes(kind, number, jacobian, modes) -> omega, error, slope, certified"},
     {"closed_count", py_closed_count, METH_VARARGS,

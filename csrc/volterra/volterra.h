@@ -5,8 +5,7 @@
 #include <stddef.h>
 
 #include "base/status.h"
-#include "base/workspace.h"
-#include "law/law.h"
+#include "law/step.h"
 
 /* In step n, of length h, the forces f_n are constant: with the step responses S of the points
 
@@ -33,21 +32,9 @@ struct rd_volterra_run {
     double residual; /* of the last one                               */
 };
 
-/* lays out the work, or counts it while the workspace measures */
-struct rd_volterra_work {
-    double *C;     /* (laws, laws) half of what forces move in the step itself */
-    double *lean;  /* (laws,) half of what the points move without them        */
-    double *start; /* (laws,)                                                  */
-    double *force; /* (laws,)                                                  */
-    double *kept;  /* (laws,)                                                  */
-    double *solve; /* (laws, laws + 4) of rd_laws_solve                        */
-};
-
-void rd_volterra_work(size_t laws, struct rd_workspace *workspace, struct rd_volterra_work *work);
-
 /* Take steps from run->made to `until`. RD_OK; RD_NO_CONVERGENCE: the next step does not hold;
-   RD_INTERRUPTED: a law failed in it. */
+   RD_INTERRUPTED: a law failed in it. Of `step` only the work need be laid out. */
 enum rd_status rd_volterra_run(const struct rd_volterra *system, size_t until,
-                               const struct rd_volterra_work *work, struct rd_volterra_run *run);
+                               struct rd_law_step *step, struct rd_volterra_run *run);
 
 #endif

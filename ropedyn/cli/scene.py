@@ -168,7 +168,6 @@ def _transient(options: argparse.Namespace) -> None:
         quantity=options.quantity,
         start=dict(options.start) or None,
         method=options.method,
-        step=options.step,
         tolerance=options.tolerance,
         progress=progress(options),
     )
@@ -206,8 +205,7 @@ TRANSIENT = Command(
             metavar="POINT=LOAD",
         ),
         option("--method", "(%(default)s)", choices=METHODS, default="auto"),
-        option("--step", "of the direct method, at most [s]", type=float),
-        option("--tolerance", "instead: of the error that steps cause", type=float),
+        option("--tolerance", "part of the largest value that errors keep to", type=float),
         PROGRESS,
     ),
     "Motion over time, driven by forces or moved ends, or let go from a load.",

@@ -23,10 +23,11 @@ from ..eigen.vectors import within
 from ..response.deflection import POINTS
 from ..response.moved_end import is_end
 from ..scene import damping
-from .history import History
+from .coupled.energy import of_chain
+from .history import Balance, History
 from .line.inversion import invert
 from .mesh_error import against_spans
-from .modal.energy_balance import balance
+from .modal.energy_balance import balance, tells_energy
 from .modal.expansion import refuse_losses
 from .modal.superposition import apart, estimated, fastest, superpose
 from .moved import Moved
@@ -57,8 +58,13 @@ def solve_linear(run: Run) -> History:
         cost=Cost(moved.method, len(model.x) - 1, moved.modes, sweeps=2 * moved.lines),
         error=moved.error,
         mesh_error=mesh_error,
-        balance=partial(balance, kept, fastest(kept)),
+        balance=partial(_balance, kept),
     )
+
+
+def _balance(run: Run) -> Balance:
+    """Return the energies, of modes where damping does not couple them."""
+    return balance(run, fastest(run)) if tells_energy(run) else of_chain(run)
 
 
 def within_tolerance(run: Run) -> Moved:

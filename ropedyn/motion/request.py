@@ -26,7 +26,7 @@ from .start import Begun, kicked, released
 EVENTS = "events"
 TOLERANCE = 1e-3
 """Part of the largest value of each response that errors keep to where none is given."""
-METHODS = ("auto", "modal", "line", EVENTS, "direct")
+METHODS = ("auto", "modal", "line", EVENTS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +39,8 @@ class Run:
     drives: tuple[Point, ...]
     forces: tuple[Force, ...]  # one for each
     responses: tuple[Point, ...]  # Motion, internal forces, tips of wires
-    direct: bool  # whether steps answer, not modes
     method: str = "auto"  # as it was asked for
+    is_linear: bool = True  # whether sums tell the motion
     order: int = 0  # how often the displacement is differentiated
     # under which the rope rests before the first time, when it is let go
     loads: Mapping[Point, float] = field(default_factory=dict)
@@ -48,10 +48,8 @@ class Run:
     coarse: Run | None = None  # the same with shapes and velocities at fewer places
     snapshots: Real = field(default_factory=lambda: np.zeros(0))  # (s,) looks at all of it [s]
     modes: int | None = None  # of each component, that the modal method sums
-    step: float | None = None  # of the direct method: one of them at most [s]
     tolerance: float | None = None  # of the largest value of each response
     together: bool = False  # of all responses of one coordinate instead
-    spectral_radius: float = 1.0  # of the direct method at infinite frequency
     progress: Callable[[float], Any] = silent  # takes the fraction that is done
     partial: bool = False  # whether what was computed until the numbers fail is an answer
     # of the model, drives and responses; other kinds of ropes have their own
@@ -71,21 +69,16 @@ class Run:
         velocity: Any,
         method: str,
         modes: int | None,
-        step: float | None,
         tolerance: float | None,
-        spectral_radius: float,
         snapshots: Any,
         progress: Any,
         partial: bool,
     ) -> Run:
         """Check what is asked."""
-        direct = is_direct(model, method)
+        why = _refused(model, method)
         check.one_of(quantity, "quantity", MOTIONS)
         t = checked_times(time)
         drives, given = _driven(model, drive, force, t)
-        radius = check.number(spectral_radius, "spectral_radius", sign="nonnegative")
-        if radius > 1:
-            raise SceneError(f"spectral_radius must be at most 1, got {radius!r}")
         loads, kicks = released(model, start), kicked(model, velocity)
         run = cls(
             model,
@@ -93,14 +86,12 @@ class Run:
             drives,
             given,
             responses=observed(model, response, drives),
-            direct=direct,
             method=method,
+            is_linear=not why,
             order=MOTIONS[quantity],
             snapshots=checked_snapshots(snapshots, t),
             modes=None if modes is None else check.count(modes, "modes", most=1_000_000),
-            step=check.optional(step, "step", "s", sign="positive"),
             tolerance=check.optional(tolerance, "tolerance", sign="positive"),
-            spectral_radius=radius,
             progress=reporter(progress),
             partial=check.instance(partial, "partial", bool, "True or False"),
         )
@@ -170,16 +161,16 @@ class Run:
         }
 
 
-def is_direct(model: Compiled, method: str) -> bool:
-    """Whether something is not linear, or steps are asked for; refuse what tells linear motion."""
+def _refused(model: Compiled, method: str) -> str:
+    """Say what is not linear; refuse what tells linear motion there."""
     check.one_of(method, "method", METHODS)
-    why = why_direct(model)
+    why = why_not_linear(model)
     if method in ("modal", "line") and why:
-        raise SceneError(f'method must be "direct" or "auto" where {why}, got "{method}"')
-    return method == "direct" or (method in ("auto", EVENTS) and bool(why))
+        raise SceneError(f'method must be "auto" or "events" where {why}, got "{method}"')
+    return why
 
 
-def why_direct(model: Compiled) -> str:
+def why_not_linear(model: Compiled) -> str:
     """Say why modes do not tell the motion, with nothing where they do."""
     for one in scene_laws(model.scene):
         return f"{one.name} is not linear"

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 
 from ..base.errors import SolveError
-from .direct.direct import march, why_not_march
 from .history import History
 from .linear import resists_beside_ratios, solve_linear
 from .phases.components import why_not_events
 from .phases.events import solve_events
 from .request import EVENTS, Run
 from .smooth.smooth import collocate, takes
-from .volterra import follows, has_calls, integrate
+from .volterra import integrate
 
 
 def _by_events(run: Run) -> History:
@@ -20,10 +19,8 @@ def _by_events(run: Run) -> History:
     try:
         found = solve_events(run)
     except SolveError:
-        if not follows(run):
-            raise
         return integrate(run)
-    if math.isinf(found.sure_until) or not follows(run):
+    if math.isinf(found.sure_until):
         return found
     try:
         return integrate(run)
@@ -35,12 +32,8 @@ def follow_motion(run: Run) -> History:
     """Return the motion by the method that was asked for; see `Model.transient`."""
     if run.method == EVENTS:
         return solve_events(run)
-    if not run.direct and not resists_beside_ratios(run):
+    if run.is_linear and not resists_beside_ratios(run):
         return solve_linear(run)
-    if run.method == "auto" and not why_not_events(run):
+    if not why_not_events(run):
         return _by_events(run)
-    if takes(run):
-        return collocate(run)
-    if follows(run) and (why_not_march(run) or has_calls(run.model)):
-        return integrate(run)
-    return march(run)
+    return collocate(run) if takes(run) else integrate(run)

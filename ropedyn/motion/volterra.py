@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
@@ -23,30 +24,30 @@ from numpy.typing import NDArray
 from .. import _core
 from ..base.answer import Cost
 from ..base.array import Real
-from ..base.computed import computed
+from ..base.computed import changed, computed
 from ..base.errors import SolveError
 from ..base.progress import silent
 from ..chain.compiled import Compiled
 from ..chain.port import Point
 from ..scene.force import Samples, Step
-from ..scene.tension import Tension
-from .acting import acting_laws, core_numbers, scene_laws
-from .direct.direct import balance
-from .history import History
+from .acting import acting_laws, core_numbers
+from .coupled.energy import of_chain
+from .history import History, ended_by
 from .line.grid import is_even
 from .linear import nearest, snapshots_of, within_tolerance
 from .mesh_error import against_spans
+from .modal.expansion import refuse_losses
 from .moved import Moved
 from .request import TOLERANCE, Run
 from .smooth.laws import LawFailure, SmoothLaw
 from .smooth.smooth import scale
-from .undamped import losses_of
 
 FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, at first at least and at most.
 SHARPER = 0.2  # Linear motion is known to this part of the tolerance, if it can be,
 SHAPED = 0.25  # from shapes and velocities to this.
 TIMES = 2.0  # A run is off by so many times its distance to one with steps twice as long.
 BLOCK = 2048  # So many steps are taken at a time.
+STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answer.
 NONE = np.zeros(0)
 
 
@@ -71,19 +72,6 @@ class CoreActing(NamedTuple):
     def core(self) -> tuple[NDArray[np.int32], Real, tuple[Callable[..., Any] | None, ...]]:
         """What `_core.volterra` takes."""
         return self.kind, self.value, tuple(one.call for one in self.told)
-
-
-def has_calls(model: Compiled) -> bool:
-    """Whether Python knows some of the laws, which steps along the chain ask one by one."""
-    return any(one.law.call for one in scene_laws(model.scene))
-
-
-def follows(run: Run) -> bool:
-    """Whether this answers: the method is open, and all but laws of points is linear."""
-    given = run.partial or run.step is not None or run.spectral_radius != 1 or run.modes is not None
-    tension = run.model.scene.tension
-    changes = isinstance(tension, Tension) and (tension.pulsates or tension.stretching)
-    return run.method == "auto" and not given and not changes and not losses_of(run.model)
 
 
 # --- one run --------------------------------------------------------------------------------------
@@ -147,12 +135,16 @@ class Stepped:
         motion[:, 0] = linear[:, 0]
         h, size = float(self.time[1] - self.time[0]), np.zeros(count)
         known = laws.core, float(run.time[0]), h, kernel, linear, force, motion, size
-        for first in range(0, self.count, BLOCK):
-            until = min(first + BLOCK, self.count)
-            made, residual, failure = _core.volterra(*known, first, until)
-            if made < until:
-                raise self._error(failure, float(self.time[made]), residual)
-            run.progress(until / self.count)
+        made = 0
+        try:
+            for first in range(0, self.count, BLOCK):
+                until = min(first + BLOCK, self.count)
+                made, residual, failure = _core.volterra(*known, first, until)
+                if made < until:
+                    raise self._error(failure, float(self.time[made]), residual)
+                run.progress(until / self.count)
+        except STOPS as error:
+            raise Ended(error, float(self.time[made])) from error
         return force
 
     def _error(self, failure: Any, when: float, residual: float) -> BaseException:
@@ -169,13 +161,25 @@ class Unsettled(SolveError):
     """Forces of a step that were not found."""
 
 
+class Ended(Exception):
+    """What ended a run early, and when [s]."""
+
+    def __init__(self, error: BaseException, when: float) -> None:
+        super().__init__(when)
+        self.error, self.when = error, when
+
+
 # --- runs that agree ------------------------------------------------------------------------------
 
 
 def integrate(run: Run) -> History:
     """Find the motion under laws of points; see `Model.transient`."""
+    refuse_losses(run.model)
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
-    stepped, moved = _agreed(run, tolerance)
+    try:
+        stepped, moved = _agreed(run, tolerance)
+    except Ended as ended:
+        return _ended(run, ended)
     x, snapshot = snapshots_of(stepped.pushed().but(tolerance=tolerance))
     kept, elements = run.kept, len(run.model.x) - 1
     return History(
@@ -186,8 +190,24 @@ def integrate(run: Run) -> History:
         cost=Cost("volterra", elements, moved.modes, stepped.count),
         error=moved.error,
         mesh_error=partial(against_spans, kept, moved.value, integrate),
-        balance=partial(balance, kept),
+        balance=partial(of_chain, kept),
     )
+
+
+def _ended(run: Run, ended: Ended) -> History:
+    """Return what was before a run ended, where that is wanted, or raise what ended it."""
+    known, error = run.time <= ended.when, ended.error
+    history = None
+    if known.sum() > 1:
+        seen = run.snapshots[run.snapshots <= ended.when]
+        before = run.but(time=run.time[known], snapshots=seen, progress=silent, partial=False)
+        with suppress(SolveError):
+            history = changed(integrate(before), stopped=ended_by(error))
+    if run.partial and history is not None:
+        return history
+    if isinstance(error, SolveError):
+        error.history = history
+    raise error
 
 
 def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
@@ -198,8 +218,8 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
         stepped = Stepped(run, laws, count, tolerance)
         try:
             found = stepped.moved()
-        except Unsettled:
-            if 2 * count > MOST_STEPS:
+        except Ended as ended:
+            if not isinstance(ended.error, Unsettled) or 2 * count > MOST_STEPS:
                 raise
             count, before, apart = 2 * count, None, None
             continue

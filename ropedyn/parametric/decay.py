@@ -16,9 +16,9 @@ import math
 import numpy as np
 
 from ..base.array import Real
+from ..motion.modal_system import ModalSystem
 from .hill import Hill, Numbers, order_of
 from .krein import TAIL, Regions, Unstable
-from .modal_system import ModalSystem
 from .monodromy import Propagator
 
 EPS = float(np.finfo(float).eps)

@@ -13,9 +13,9 @@ from ..base.array import Complex, Index, Real
 from ..base.errors import SceneError
 from ..base.table import Table
 from ..chain.compiled import Compiled
+from ..motion.modal_system import ModalSystem, modal_system, transverse
 from ..scene.tension import Tension
 from .hill import motion_next_to
-from .modal_system import ModalSystem, modal_system, transverse
 from .monodromy import finite, monodromy, rates, scales, steps_for
 
 EPS = float(np.finfo(float).eps)

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..base.array import Complex, Real
 from ..base.computed import computed
-from .modal_system import ModalSystem
+from ..motion.modal_system import ModalSystem
 
 Numbers = NDArray[Any]  # Real where motion turns without damping, complex elsewhere.
 EPS = float(np.finfo(float).eps)

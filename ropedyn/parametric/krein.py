@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.array import Flags, Index, Real
+from ..motion.modal_system import ModalSystem
 from .hill import flat_band, flat_pair, turns
-from .modal_system import ModalSystem
 from .monodromy import Propagator, scales
 
 NEUTRAL = 1e-6

@@ -25,7 +25,7 @@ import numpy as np
 
 from ..base.array import Index, Real
 from ..base.errors import SolveError
-from .modal_system import ModalSystem
+from ..motion.modal_system import ModalSystem
 
 HALF = (
       0.07879572252168641926390768,   0.31309610341510852776481247,   0.02791838323507806610952027,

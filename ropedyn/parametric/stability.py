@@ -15,8 +15,8 @@ from ..base.errors import SceneError
 from ..base.progress import Progress, reporter
 from ..base.table import Table
 from ..chain.compiled import Compiled
+from ..motion.modal_system import ModalSystem, modal_system
 from .floquet import checked_modes
-from .modal_system import ModalSystem, modal_system
 from .monodromy import exponent
 from .tongues import Boundary, Tongue, boundary, threshold, tongues_of
 

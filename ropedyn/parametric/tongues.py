@@ -13,9 +13,9 @@ from ..base.answer import Answer, Cost, axes
 from ..base.array import Index, Real
 from ..base.computed import waited
 from ..base.table import Table
+from ..motion.modal_system import ModalSystem
 from .decay import damped
 from .krein import NEUTRAL, Regions, Unstable, undamped
-from .modal_system import ModalSystem
 from .monodromy import rates
 
 HIGHEST_ORDER = 4  # Tongues up to this order are named.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 COLOR = {"difference": RED, "rigid": BLUE, "tensed": ORANGE, "continuous": GREEN}
-LINE = {"sweep": "-", "auto": "-", "lapack": "--", "direct": "--"}
+LINE = {"sweep": "-", "auto": "-", "lapack": "--"}
 """Colours of each kind of element, and lines of solvers, dotted those of the others."""
 CHANGE, TIME = BLUE, ORANGE
 """Colours of what an effect changes, and of its share of time."""

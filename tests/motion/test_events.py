@@ -134,9 +134,7 @@ def followed(model, time, response):
         velocity=None,
         method="events",
         modes=None,
-        step=None,
         tolerance=None,
-        spectral_radius=1.0,
         snapshots=None,
         progress=None,
         partial=False,
@@ -246,12 +244,12 @@ def test_answer_is_saved_with_the_time_it_is_sure_until(tmp_path):
     assert rd.load(tmp_path / "h.nc").sure_until == history.sure_until == math.inf
 
 
-@pytest.mark.parametrize("asked", [{"step": 1e-3}, {"partial": True}, {"spectral_radius": 0.5}])
-def test_what_steps_alone_know_is_refused(asked):
+@pytest.mark.parametrize("asked", [{"partial": True}, {"velocity": {("z", 0.5): 0.1}}])
+def test_what_phases_do_not_begin_with_is_refused(asked):
     model = rope(rd.Stop(0.5, 1e4)).compile(elements=4)
-    with pytest.raises(rd.SceneError, match=r"partial, step, .* must be left out"):
+    with pytest.raises(rd.SceneError, match=r"partial, velocity and shapes must be left out"):
         model.transient([0.0, 0.1], method="events", **PUSH, **asked)
-    assert model.transient([0.0, 0.1], **PUSH, **asked).cost.method == "direct"
+    assert model.transient([0.0, 0.1], **PUSH, **asked).cost.method == "volterra"
 
 
 @pytest.mark.long

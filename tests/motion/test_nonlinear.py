@@ -30,7 +30,7 @@ TIME = np.linspace(0.0, 3 * PERIOD, 31)
 def released(model, time=TIME, **asked):
     """Let the mass go from its amplitude."""
     start = {MIDDLE: STIFFNESS * AMPLITUDE}
-    return model.transient(time, start=start, response=MIDDLE, method="direct", **asked)
+    return model.transient(time, start=start, response=MIDDLE, **asked)
 
 
 def error(history, exact):
@@ -69,13 +69,15 @@ def test_stretching_mass_on_a_string_is_duffings(tolerance, claim):
         mass_on_a_string(tension=tension, axial_stiffness=AXIAL), tolerance=tolerance
     )
     claim(error(history, duffing(TIME, CUBIC)) / tolerance)
+    assert history.cost.method == "collocation"
     assert np.isinf(history.mesh_error).all()
     assert history.error.max() <= tolerance * AMPLITUDE
 
 
 def test_stretching_keeps_energy():
     tension = rd.Tension(TENSION, stretching=True)
-    history = released(mass_on_a_string(tension=tension, axial_stiffness=AXIAL), step=PERIOD / 50)
+    history = released(mass_on_a_string(tension=tension, axial_stiffness=AXIAL))
+    # rounding of some 1000 steps
     assert np.ptp(kept(history)) < 1e-12 * kept(history)[0]
 
 
@@ -132,13 +134,11 @@ def test_quadratic_dashpot_takes_amplitude_as_its_first_integral_says(claim):
     reference="cosines about +-F/k, half a period each",
     accepted=1.0,
 )
-@pytest.mark.parametrize("radius", [1.0, 0.5])
-def test_friction_takes_the_same_each_period_and_sticks(radius, claim):
+def test_friction_takes_the_same_each_period_and_sticks(claim):
     friction = 0.53
     history = released(
         mass_on_a_string(rd.Dashpot(LENGTH / 2, friction, exponent=0.0)),
         tolerance=1e-4,
-        spectral_radius=radius,
     )
     exact = coulomb(TIME, friction)
     claim(error(history, exact) / 1e-4)
@@ -148,9 +148,7 @@ def test_friction_takes_the_same_each_period_and_sticks(radius, claim):
 
 def test_friction_holds_what_is_pushed_too_little():
     model = mass_on_a_string(rd.Dashpot(LENGTH / 2, 1.0, exponent=0.0))
-    history = model.transient(
-        TIME, drive=MIDDLE, force=rd.Sine(0.999, 20.0), method="direct", step=PERIOD / 40
-    )
+    history = model.transient(TIME, drive=MIDDLE, force=rd.Sine(0.999, 20.0))
     assert np.abs(history.value).max() < 1e-15 * AMPLITUDE
 
 
@@ -185,7 +183,7 @@ def test_stop_bounces_for_half_a_period_of_contact():
 
 def test_stop_beyond_a_gap_that_is_not_reached_does_nothing():
     free, stopped = (
-        released(mass_on_a_string(*parts), step=PERIOD / 100)
+        released(mass_on_a_string(*parts))
         for parts in ((), [rd.Stop(LENGTH / 2, 1e5, gap=1.01 * AMPLITUDE)])
     )
     # solved with and without a law: the last digits differ
@@ -201,8 +199,7 @@ def pushed(*parts, time=TIME, **asked):
         time,
         drive=MIDDLE,
         force=rd.Impulse(0.01, time=TIME[1], duration=PERIOD / 7),
-        method="direct",
-        **{"step": PERIOD / 60, **asked},
+        **asked,
     )
 
 
@@ -222,8 +219,11 @@ def test_law_in_python_is_the_part_it_says(law, part, quantity):
     python = pushed(rd.NodeForce(LENGTH / 2, law), quantity=quantity)
     own = pushed(part, quantity=quantity)
     # Newton's method ends within 1e-12 of the forces
-    assert np.abs(python.value - own.value).max() < 1e-9 * np.abs(own.value).max()
-    assert np.ptp(kept(python)) < 1e-12 * python.energy["input"].max()
+    apart = np.abs(python.value - own.value)
+    assert (apart <= python.error + own.error + 1e-9 * np.abs(own.value).max()).all()
+    assert python.error.max() <= 1e-3 * np.abs(own.value).max()
+    # what drives is taken at the middle of steps that are right to the tolerance
+    assert np.ptp(kept(python)) < 1e-3 * python.energy["input"].max()
 
 
 def test_laws_of_both_kinds_act_together():
@@ -233,26 +233,29 @@ def test_laws_of_both_kinds_act_together():
     ]
     own = pushed(rd.Spring(LENGTH / 2, 300.0), parts[1])
     both = pushed(*parts)
-    assert np.abs(both.value - own.value).max() < 1e-9 * np.abs(own.value).max()
-    assert both.energy["dissipated"][-1] == pytest.approx(own.energy["dissipated"][-1], rel=1e-9)
+    assert (np.abs(both.value - own.value) <= both.error + own.error).all()
+    assert both.energy["dissipated"][-1] == pytest.approx(own.energy["dissipated"][-1], rel=1e-3)
 
 
 def test_law_of_time_alone_is_a_force():
     force = rd.Sine(1.0, 30.0)
     law = rd.NodeForce(LENGTH / 2, lambda t, u, v: float(force.value(np.array(t))))
-    asked = {"response": MIDDLE, "method": "direct", "step": PERIOD / 60}
-    python = mass_on_a_string(law).transient(TIME, **asked)
-    own = mass_on_a_string().transient(TIME, drive=MIDDLE, force=force, **asked)
-    assert np.abs(python.value - own.value).max() < 1e-12 * np.abs(own.value).max()
-    assert -python.energy["laws"] == pytest.approx(own.energy["input"], rel=1e-9, abs=1e-15)
+    python = mass_on_a_string(law).transient(TIME, response=MIDDLE)
+    own = mass_on_a_string().transient(TIME, drive=MIDDLE, force=force, response=MIDDLE)
+    assert (np.abs(python.value - own.value) <= python.error + own.error).all()
+    most = np.abs(own.energy["input"]).max()
+    assert -python.energy["laws"] == pytest.approx(own.energy["input"], abs=1e-3 * most)
+
+
+LATE = (TIME[5] + TIME[6]) / 2
 
 
 def wrong(value):
     """A law that is well for a while."""
-    return rd.NodeForce(LENGTH / 2, lambda t, u, v: -u if t < TIME[5] else value)
+    return rd.NodeForce(LENGTH / 2, lambda t, u, v: -u if t < LATE else value)
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, None, "1"])
+@pytest.mark.parametrize("value", [math.nan, None, "1"])
 def test_law_that_returns_no_number_is_named(value):
     with pytest.raises(
         rd.SolveError, match=r"parts\[0\].law\(t=0\.0\d+, u=.*must return"
@@ -264,8 +267,13 @@ def test_law_that_returns_no_number_is_named(value):
     assert "must return" in history.stopped
 
 
+def test_law_that_returns_infinity_is_named():
+    with pytest.raises(rd.SolveError, match=r"parts\[0\] does not converge at t = .* is inf"):
+        pushed(wrong(math.inf))
+
+
 def fail(t, u, v):
-    if t > TIME[5]:
+    if t > LATE:
         raise ZeroDivisionError("no")
     return 0.0
 
@@ -284,6 +292,7 @@ def test_law_that_raises_is_named_and_nothing_is_lost():
 def test_history_of_a_law_without_a_name_pickles_once_it_is_asked():
     history = pushed(rd.NodeForce(LENGTH / 2, lambda t, u, v: -u))
     error, energy = history.error, history.energy
+    assert np.isfinite(history.mesh_error).all()
     copy = pickle.loads(pickle.dumps(history))
     assert np.array_equal(copy.error, error)
     assert energy.keys() == copy.energy.keys()
@@ -293,14 +302,6 @@ def test_law_that_jumps_does_not_converge_and_says_when():
     law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -math.copysign(1.0, v))
     with pytest.raises(rd.SolveError, match=r"parts\[0\] does not converge at t = .* residual"):
         pushed(law)
-
-
-@pytest.mark.parametrize("tension", [{"amplitude": 1.0, "frequency": 9.0}, {"stretching": True}])
-def test_law_in_python_is_refused_where_the_tension_changes(tension):
-    law = rd.NodeForce(LENGTH / 2, fail)
-    model = mass_on_a_string(law, tension=rd.Tension(TENSION, **tension), axial_stiffness=AXIAL)
-    with pytest.raises(rd.SceneError, match=r"parts\[0\] must not be a NodeForce"):
-        released(model)
 
 
 # --- tension that pulsates ----------------------------------------------------------------------
@@ -328,9 +329,64 @@ def test_pulsating_tension_is_mathieus(tolerance, claim):
 
 def test_work_of_pulsation_is_input():
     tension = rd.Tension(TENSION, amplitude=30.0, frequency=1.9 / PERIOD)
-    history = released(mass_on_a_string(tension=tension), step=PERIOD / 50)
+    history = released(mass_on_a_string(tension=tension))
     assert np.ptp(history.energy["input"]) > 0.1 * history.energy["strain"][0]
-    assert np.ptp(kept(history)) < 1e-12 * kept(history)[0]
+    # motion that grows: rounding of the largest energy
+    assert np.ptp(kept(history)) < 1e-12 * history.energy["input"].max()
+
+
+# --- laws beside a tension that varies ----------------------------------------------------------
+
+LAWS = {
+    "stop": (rd.Stop(LENGTH / 2, 5e3, gap=2e-3), lambda u, v: -5e3 * max(u - 2e-3, 0.0)),
+    "square": (rd.Dashpot(LENGTH / 2, 5.0, exponent=2.0), lambda u, v: -5.0 * v * abs(v)),
+    "dashpot": (rd.Dashpot(LENGTH / 2, 0.5), lambda u, v: -0.5 * v),
+    "call": (rd.NodeForce(LENGTH / 2, lambda t, u, v: -1e6 * u**3), lambda u, v: -1e6 * u**3),
+}
+TENSIONS = {
+    "pulsating": rd.Tension(TENSION, amplitude=30.0, frequency=1.9 / PERIOD, phase=0.3),
+    "stretching": rd.Tension(TENSION, stretching=True),
+    "both": rd.Tension(TENSION, amplitude=30.0, frequency=1.9 / PERIOD, stretching=True),
+}
+
+
+@pytest.mark.claim(
+    "Laws of one mass beside a tension that varies: largest error over what is said",
+    reference="solve_ivp of the one equation to 1e-11",
+    accepted=1.0,
+)
+@pytest.mark.parametrize("tension", TENSIONS)
+@pytest.mark.parametrize("law", LAWS)
+def test_laws_act_beside_a_tension_that_varies(law, tension, claim):
+    part, force = LAWS[law]
+    given = TENSIONS[tension]
+
+    def rhs(t, y):
+        now = TENSION + float(given.pulsation(np.array(t))) if given.pulsates else TENSION
+        now += 2 * AXIAL / LENGTH**2 * y[0] ** 2 if given.stretching else 0.0
+        return [y[1], (-4 / LENGTH * now * y[0] + force(*y)) / MASS]
+
+    # short steps meet the corner of the stop
+    kept_to = {"rtol": 1e-11, "atol": 1e-15, "max_step": PERIOD / 300}
+    exact = solve_ivp(rhs, (0, TIME[-1]), [AMPLITUDE, 0], "DOP853", TIME, **kept_to).y[0]
+    model = mass_on_a_string(part, tension=given, axial_stiffness=AXIAL)
+    histories = [released(model, tolerance=tolerance) for tolerance in (1e-3, 1e-5)]
+    for history, tolerance in zip(histories, (1e-3, 1e-5)):
+        assert history.error.max() <= tolerance * np.abs(history.value).max()
+        # of drag Simpson's rule tells what it takes
+        lost = 1e-11 if law != "dashpot" else tolerance
+        assert np.ptp(kept(history)) < lost * np.abs(history.energy["input"]).max() + lost
+    claim(max((np.abs(h.value[0] - exact) / h.error[0]).max() for h in histories))
+
+
+def test_friction_holds_beside_a_tension_that_pulsates():
+    tension = rd.Tension(TENSION, amplitude=30.0, frequency=1.9 / PERIOD)
+    model = mass_on_a_string(rd.Dashpot(LENGTH / 2, 2.0, exponent=0.0), tension=tension)
+    history = released(model, np.linspace(0.0, 6 * PERIOD, 301))
+    last = history.value[0, -100:]
+    assert np.ptp(last) < 1e-9 * AMPLITUDE < np.abs(last).max()
+    # a force within the friction holds it: 4 T/L u below it at the largest tension
+    assert np.abs(last).max() * 4 * 130.0 / LENGTH < 2.0
 
 
 # --- what is not asked for is not computed ------------------------------------------------------
@@ -352,13 +408,12 @@ def test_run_without_an_effect_is_that_of_the_scene_that_never_had_it(effect):
     given = EFFECTS[effect]
     scene = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION).replace(**given)
     never = rd.Scene(scene.rope, tension=TENSION)
-    asked = {"drive": MIDDLE, "force": rd.Sine(1.0, 20.0), "method": "direct", "step": PERIOD / 60}
+    asked = {"drive": MIDDLE, "force": rd.Sine(1.0, 20.0)}
     left, own = (
         one.compile(elements=4).transient(TIME, **asked) for one in (scene.without(effect), never)
     )
     assert effect in scene.effects
-    assert left.cost.factorisations == own.cost.factorisations == 1
-    assert left.cost.sweeps == own.cost.sweeps
+    assert left.cost.method == own.cost.method == "modal"
     assert np.array_equal(left.value, own.value)
     assert left.energy.keys() == own.energy.keys()
     assert all(np.array_equal(left.energy[name], own.energy[name]) for name in own.energy)

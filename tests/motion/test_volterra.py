@@ -7,7 +7,11 @@ import pytest
 from conftest import long
 
 import ropedyn as rd
+from ropedyn.motion.coupled.steps import CoupledPassage
+from ropedyn.motion.coupled.system import CoupledSystem
 from ropedyn.motion.phases.components import why_not_events
+from ropedyn.motion.smooth.smooth import agree
+from ropedyn.motion.smooth.system import OutputTimes
 from ropedyn.motion.volterra import integrate
 
 ROPE = rd.Rope(1.0, 0.4, bending_stiffness=1.54)
@@ -39,14 +43,18 @@ def test_laws_beside_stiffness_damping_are_answered(kind, element):
     assert (np.abs(history.value - sharper.value) <= history.error + sharper.error).all()
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
-def test_rigid_chains_move_as_by_steps_along_them(kind):
+def test_rigid_chains_move_as_by_steps_of_their_modes(kind):
     model = scene(KINDS[kind]).compile(elements=20, element="rigid")
     asked = SHAKEN | {"response": [MIDDLE, PUSH]}
-    steps = model.transient(TIME, **asked, method="direct", tolerance=1e-5)
-    found = integrate(asked_of(model, TIME, **asked))
-    assert (np.abs(found.value - steps.value) <= found.error + 3 * steps.error).all()
+    run = asked_of(model, TIME, **asked)
+    look = OutputTimes(slice(0, 2), TIME, 0)
+    system = CoupledSystem.coupled(run, ("z", "beta"), [MIDDLE, PUSH], [look])
+    assert system.coupling is not None
+    steps = agree(system, 1e-5, run, CoupledPassage)
+    found = model.transient(TIME, **asked)
+    assert found.cost.method == "volterra"
+    assert (np.abs(found.value - steps.looked[0]) <= found.error + 3 * steps.step_error).all()
 
 
 BEGUN = {
@@ -152,15 +160,6 @@ def test_a_law_that_fails_says_where():
     words = scene(rd.NodeForce(0.3, lambda t, u, v: "much"))
     with pytest.raises(rd.SolveError, match=r"parts\[0\]\.law\(.*\) must return"):
         words.compile().transient(TIME, **SHAKEN, response=MIDDLE)
-
-
-@pytest.mark.parametrize(
-    "asked", [{"velocity": {MIDDLE: 0.1}}, {"start": lambda x: np.sin(np.pi * x) ** 2}]
-)
-def test_steps_do_not_begin_with_shapes_and_velocities(asked):
-    model = scene(KINDS["stop"]).compile()
-    with pytest.raises(rd.SceneError, match="velocity must be None and start loads"):
-        model.transient(TIME, **asked, response=MIDDLE, method="direct")
 
 
 # --- against exact phases -------------------------------------------------------------------------

@@ -627,10 +627,10 @@ def test_errors_of_motion_are_those_to_the_motion_of_continuous_spans():
 
 
 def test_each_method_of_motion_is_a_row_and_what_it_refuses_too():
-    methods = ("modal", "direct")
+    methods = ("modal", "events")
     question = rd.ask.motion(TIMES, **PUSH, tolerance=1e-3)
     answer = cost(SWUNG, question, elements=16, element=("rigid", "continuous"), solver=methods)
-    assert answer.solver.tolist() == ["modal", "direct", "modal", "direct"]
+    assert answer.solver.tolist() == ["modal", "events", "modal", "events"]
     assert answer.way(2) == "continuous, modal"
     assert "elements must be given" in answer.refusal[3]
     # steps add to what elements cause

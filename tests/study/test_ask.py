@@ -274,7 +274,7 @@ def test_a_question_of_motion_is_asked_by_the_method_that_is_named():
     scene = SCENE.replace(damping=rd.RayleighDamping(1.0, 1e-5))
     question = rd.ask.motion(TIMES, drive=("z", 0.3), force=rd.Sine(1.0, 40.0))
     model = scene.compile(elements=12, element="rigid")
-    for method in ("modal", "direct"):
+    for method in ("modal", "line"):
         assert question.of(model, solver=method).cost.method == method
 
 

@@ -159,8 +159,10 @@ CALLS = {
         lambda m: again(lambda: moved(m, "line", SWEPT)),
     ),
     "motion by steps": (
-        lambda: HELD.compile(elements=10_000, element="rigid"),
-        lambda m: moved(m, "direct", SWEPT, step=1e-4),
+        lambda: HELD.replace(
+            tension=rd.Tension(1000.0, amplitude=50.0, frequency=3.0), parts=[rd.Dashpot(5.0, 3.0)]
+        ).compile(elements=64, element="rigid"),
+        lambda m: again(lambda: moved(m, "auto", rd.Sine(0.5, 4.0), TIME[::100])),
     ),
     "motion by an integral equation": (
         lambda: HELD.replace(

@@ -102,3 +102,53 @@ PyObject *py_failure(const struct py_calls *calls, enum rd_status status)
     return Py_BuildValue("(Oiddd)", error, (int)calls->failed[0], calls->failed[1],
                          calls->failed[2], calls->failed[3]);
 }
+
+/* --- arguments ---------------------------------------------------------------------------------*/
+
+int py_laws_parse(PyObject *object, struct py_kept *kept, struct py_calls *calls,
+                  struct rd_laws *laws)
+{
+    PyObject *kind, *value;
+    if (!PyArg_ParseTuple(object, "OOO!;laws must be (kind, value, calls)", &kind, &value,
+                          &PyTuple_Type, &calls->law))
+        return -1;
+    const npy_intp count = PyTuple_GET_SIZE(calls->law);
+    const npy_intp shape[] = {count, RD_LAW_VALUES};
+    laws->ports.count = (size_t)count;
+    laws->kind = py_keep(kept, kind, NPY_INT32, 1, shape, "kind");
+    laws->value = laws->kind ? py_keep(kept, value, NPY_DOUBLE, 2, shape, "value") : NULL;
+    if (laws->value == NULL)
+        return -1;
+    for (npy_intp d = 0; d < count; d++) {
+        const int32_t one = laws->kind[d];
+        const int is_called = PyCallable_Check(PyTuple_GET_ITEM(calls->law, d));
+        if (one < 0 || one >= RD_LAW_KINDS || (one == RD_GIVEN && !is_called)) {
+            PyErr_Format(PyExc_ValueError, "kind[%zd] must be 0, 1, or 2 of what is called, got %d",
+                         (Py_ssize_t)d, (int)one);
+            return -1;
+        }
+    }
+    return 0;
+}
+
+bool py_calls_python(const struct rd_laws *laws)
+{
+    for (size_t d = 0; d < laws->ports.count; d++)
+        if (laws->kind[d] == RD_GIVEN)
+            return true;
+    return false;
+}
+
+double *py_shared(struct py_kept *kept, PyObject *object, int dimensions, const npy_intp *shape,
+                  const char *name)
+{
+    double *data = py_keep(kept, object, NPY_DOUBLE, dimensions, shape, name);
+    if (data == NULL)
+        return NULL;
+    PyArrayObject *array = kept->array[kept->count - 1];
+    if ((PyObject *)array != object || !PyArray_ISWRITEABLE(array)) {
+        PyErr_Format(PyExc_ValueError, "%s must be a writable array of float64 in C order", name);
+        return NULL;
+    }
+    return data;
+}

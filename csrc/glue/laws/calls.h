@@ -3,6 +3,7 @@
 #define PY_CALLS_H
 
 #include "glue/glue.h"
+#include "law/law.h"
 
 #include <stdbool.h>
 
@@ -19,5 +20,16 @@ bool py_say(void *context, size_t law, size_t count, const double *t, const doub
 
 /* None, or where a law failed and what it raised, None of no number */
 PyObject *py_failure(const struct py_calls *calls, enum rd_status status);
+
+/* laws: (kind, value, calls) of `rd_laws` and what is called; their ports stay the caller's */
+int py_laws_parse(PyObject *object, struct py_kept *kept, struct py_calls *calls,
+                  struct rd_laws *laws);
+
+/* whether Python says one of them, which takes the GIL */
+bool py_calls_python(const struct rd_laws *laws);
+
+/* an array that the caller goes on with: it must be what it is taken for, no copy is made */
+double *py_shared(struct py_kept *kept, PyObject *object, int dimensions, const npy_intp *shape,
+                  const char *name);
 
 #endif

@@ -89,7 +89,7 @@ def growth_below(least: float, dampings: Sequence[damping.Damping], *, pushes: b
     if spring > 0 and pushes and not section == tension == spring:
         raise SceneError(
             "a spring's stiffness must be > 0 beside stiffness damping, which drives where it "
-            'pushes away, got less; of a straight rope method "direct" takes it'
+            "pushes away, got less"
         )
     half = tension * -least / 2
     return float(half + math.sqrt(half * half - least))

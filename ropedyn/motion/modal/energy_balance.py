@@ -46,7 +46,8 @@ MOST = 1 << 21  # So many numbers are computed at a time.
 
 def balance(run: Run, resolved: float) -> Balance:
     """Return the energies over time."""
-    _refuse(run)
+    if any(map(is_end, run.drives)):
+        raise SceneError("energy is not told where an end is moved")
     energy = {name: np.zeros(len(run.time)) for name in NAMES}
     shares = expand(
         run.model, run.places, run.places, modes=run.modes, resolved=resolved, bound=False
@@ -57,15 +58,12 @@ def balance(run: Run, resolved: float) -> Balance:
     return Balance(energy)
 
 
-def _refuse(run: Run) -> None:
-    why = "an end is moved" if any(map(is_end, run.drives)) else ""
+def tells_energy(run: Run) -> bool:
+    """Whether modes have energies of their own: damping does not couple them."""
     rates, chain = Rates.of(run.model.scene.dampings), run.model.chain
-    if not damping.having(run.model.scene.dampings, "ratio"):
-        closed = [proportional(chain.only(c), rates) for c in run.model.components]
-        if any(one is None for one in closed):
-            why = "damping is not proportional"
-    if why:
-        raise SceneError(f'method must be "direct" for the energy where {why}, got "modal"')
+    if damping.having(run.model.scene.dampings, "ratio"):
+        return True
+    return all(proportional(chain.only(c), rates) is not None for c in run.model.components)
 
 
 class AlikeModes(NamedTuple):

@@ -21,7 +21,7 @@ from ...chain.port import Point
 from ...response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ...response.harmonic import mesh_of_frf
 from ...scene.damping import having
-from ..request import why_direct
+from ..request import why_not_linear
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class SteppedSine:
         mesh = partial(mesh_of_frf, scene, frequency, *ends, quantity=self.quantity, value=value)
         if self.model.element == "continuous":
             mesh = MeshOfResponse(np.zeros(value.shape))
-        elif why_direct(self.model):
+        elif why_not_linear(self.model):
             mesh = MeshOfResponse(np.full(value.shape, np.inf))
         return FRF(
             *ends,

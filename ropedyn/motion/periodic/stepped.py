@@ -12,11 +12,11 @@ from ...base.array import Complex, Real
 from ...base.errors import SolveError
 from ...response.frf import FRF
 from ...response.harmonic import solve_harmonic
-from ..direct.steady_states import march_steadily
 from .asked import SteppedSine
 from .balance import HarmonicBalance
 from .continuation import Branch, Place
 from .driven import Driven, known_to
+from .slipping import slipping
 from .stability import growing
 from .state import HARMONICS, MOST, SMALL, SteadyState, by_frequency, settled
 from .transfer import PanelledTransfer
@@ -34,7 +34,7 @@ def solve_stepped(asked: SteppedSine) -> FRF:
         return _linear(asked, driven)
     states = _followed(driven) if driven.points else []
     if _slips(driven, states):
-        return march_steadily(asked, driven.turn)
+        return slipping(asked, driven.turn)
     value, error = watched(driven, asked.frequency, states)
     stable = np.full(len(asked.frequency), driven.growing == 0)
     for k, state in enumerate(states):

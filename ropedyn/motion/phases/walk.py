@@ -87,6 +87,12 @@ class Visit(NamedTuple):
         """Return q, q' and e, one after another, since the start."""
         return self.phase.state(self.driven, self.hold)
 
+    def end(self) -> Instant:
+        """Return the state that it ends in, before what happens then."""
+        x = self.state().at(np.array([self.stop - self.start]))[:, 0]
+        k = self.phase.matrices.E.shape[0]
+        return Instant(x[:k], x[k : 2 * k], x[2 * k :], self.hold)
+
 
 class PhaseWalk:
     """Motion of one component from event to event."""
@@ -96,9 +102,11 @@ class PhaseWalk:
         self.phases: dict[tuple[int, ...], Phase] = {}
         self.events: list[tuple[float, int]] = []  # when, and of which law
 
-    def visits(self, start: Instant, pieces: Iterator[ForcePiece]) -> Iterator[Visit]:
-        """Yield one phase after another."""
-        now, mode = start, self._first(start)
+    def visits(
+        self, start: Instant, pieces: Iterator[ForcePiece], mode: tuple[int, ...] | None = None
+    ) -> Iterator[Visit]:
+        """Yield one phase after another, from one that goes on if a mode is given."""
+        now, mode = start, self._first(start) if mode is None else mode
         for piece in pieces:
             if piece.kick.any():
                 now, mode = self._struck(now, mode, piece)

@@ -13,7 +13,6 @@ from ...base.array import Real
 from ...base.errors import SolveError
 from ...chain.compiled import Compiled
 from ...chain.port import Point
-from ...scene.tension import Tension
 from ..acting import acting_laws, scene_laws
 from ..states import without_dashpots
 
@@ -56,9 +55,6 @@ def why_not_smooth(model: Compiled) -> str:
             return f"{one.name} is a stop"
         if one.law.kind == "power" and one.law.value[1] <= 1:
             return f"the force of {one.name} jumps or is steep where its velocity turns"
-    tension = model.scene.tension
-    if isinstance(tension, Tension) and tension.pulsates:
-        return "the tension pulsates"
     return ""
 
 

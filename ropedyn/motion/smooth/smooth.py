@@ -17,13 +17,16 @@ from ...base.answer import Cost
 from ...base.array import Real
 from ...base.errors import SolveError
 from ...chain.compiled import Compiled
-from ...chain.port import locate, moving
+from ...chain.port import Point, locate, moving
 from ...eigen.damped.proportional import proportional
 from ...eigen.damped.rates import Rates
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ...scene.damping import having
-from ..direct.direct import balance
+from ..acting import acting_laws
+from ..coupled.energy import of_chain
+from ..coupled.steps import CoupledPassage
+from ..coupled.system import CoupledSystem, moving_together, tension_of
 from ..history import History, ended_by
 from ..linear import solve_linear
 from ..mesh_error import against_spans
@@ -31,13 +34,7 @@ from ..request import TOLERANCE, Run
 from ..states import without_dashpots
 from .laws import PointLaw, laws_on, why_not_smooth
 from .passage import LawPassage
-from .stretching import (
-    StretchedPassage,
-    StretchedSystem,
-    is_stretched,
-    moving_together,
-    stretched_points,
-)
+from .stretching import StretchedPassage
 from .system import LawQuestion, LawSystem, OutputTimes
 
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
@@ -53,29 +50,30 @@ STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answe
 
 
 def takes(run: Run) -> bool:
-    """Whether collocation answers: the method is open, laws are smooth and modes uncoupled."""
-    given = run.step is not None or run.spectral_radius != 1 or run.modes is not None
+    """Whether collocation answers: the tension varies, or laws are smooth and modes uncoupled."""
     model = run.model
-    if run.method != "auto" or given or run.is_shaped or why_not_smooth(model):
+    if not is_constant(model):
+        return True
+    if run.method != "auto" or run.coarse is not None or why_not_smooth(model):
         return False
     if having(model.scene.dampings, "loss") or model.chain.is_hysteretic:
         return False
-    return all(_is_taken(run, component) for component in model.components)
+    return all(_is_taken(model, component) for component in model.components)
 
 
-def _is_taken(run: Run, component: tuple[str, ...]) -> bool:
-    model, laws = run.model, laws_on(run.model, component)
-    rates, plain = Rates.of(model.scene.dampings), model.chain.only(component)
-    if is_stretched(model, component):
-        closed = proportional(plain, rates)
-        points = [*run.places, *run.responses]
-        return not laws and closed is not None and stretched_points(model, component, points)
+def is_constant(model: Compiled) -> bool:
+    """Whether the tension that acts on a model is the same at all times."""
+    return not any(tension_of(model, component) for component in model.components)
+
+
+def _is_taken(model: Compiled, component: tuple[str, ...]) -> bool:
+    laws = laws_on(model, component)
     if not laws:
         return True
     plain = without_dashpots(model, component)[0].chain.only(component)
     if plain.spurious or _has_no_inertia(model, component, laws):
         return False
-    return proportional(plain, rates) is not None
+    return proportional(plain, Rates.of(model.scene.dampings)) is not None
 
 
 def _has_no_inertia(model: Compiled, component: tuple[str, ...], laws: list[PointLaw]) -> bool:
@@ -127,6 +125,7 @@ def agree(
     linear, h = system.without_laws(), system.first_step
     span, worst = float(system.time[-1] - system.time[0]), np.inf
     coarse: list[Real] | None = None
+    apart = np.zeros(0)
     stages = hard = 0
     while True:
         passed = passage(system, h).through(run.progress)
@@ -144,7 +143,10 @@ def agree(
         )
         if passed.error is None and coarse is not None:
             size = scale(looked[0])[:, None]
+            # where velocities turn or contact begins, two runs may agree by chance
+            before = apart / passage.falls if apart.size else 0.0
             apart = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
+            apart = np.maximum(apart, before)
             found.step_error = TIMES * apart + rounding(looked[0], system.time)
             worst = float((found.step_error / size).max(initial=0.0))
             if worst <= tolerance:
@@ -161,11 +163,16 @@ def agree(
             return found
 
 
-def component_motion(run: Run, asked: LawQuestion) -> Agreed:
+def component_motion(
+    run: Run, component: tuple[str, ...], points: list[Point], looks: list[OutputTimes]
+) -> Agreed:
     """Take more modes until those left out do not show, where there are endless many."""
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
-    if is_stretched(run.model, asked.component):
-        return agree(StretchedSystem.stretched(run, asked), tolerance, run, StretchedPassage)
+    if _is_coupled(run.model, component):
+        system = CoupledSystem.coupled(run, component, points, looks)
+        is_plain = not system.acting and system.coupling is None
+        return agree(system, tolerance, run, StretchedPassage if is_plain else CoupledPassage)
+    asked = LawQuestion(component, laws_on(run.model, component), points, looks)
     count = MODES
     while True:
         system = LawSystem.of(run, asked, count)
@@ -189,6 +196,11 @@ def component_motion(run: Run, asked: LawQuestion) -> Agreed:
         count *= 2
 
 
+def _is_coupled(model: Compiled, component: tuple[str, ...]) -> bool:
+    """Whether a tension that varies acts on a component, or laws do that are not smooth."""
+    return tension_of(model, component) is not None or bool(why_not_smooth(model))
+
+
 # --- the answer ---------------------------------------------------------------------------------
 
 
@@ -198,8 +210,7 @@ def collocate(run: Run) -> History:
     x = within(model.x, POINTS) if model.element == "continuous" else model.x
     answer = _Answer(run, x)
     for component in moving_together(model):
-        laws = laws_on(model, component)
-        answer.take(component, laws)
+        answer.take(component)
     history = answer.history()
     error = answer.error
     if error is not None and (len(history.time) == 0 or not isinstance(error, STOPS)):
@@ -225,19 +236,20 @@ class _Answer:
         self.reached = float(run.time[-1])
         self.error: BaseException | None = None
 
-    def take(self, component: tuple[str, ...], laws: list[PointLaw]) -> None:
+    def take(self, component: tuple[str, ...]) -> None:
         """Add the motion of a component."""
         run = self.run
+        acted = bool(acting_laws(run.model, component)) or tension_of(run.model, component)
         watched = [k for k, r in enumerate(run.responses) if moving(r) in component]
         at = [run.model.coordinates.index(c) for c in component]
-        if not laws and not is_stretched(run.model, component):
+        if not acted:
             self._linear(component, watched, at)
             return
         seen = [(c, float(x)) for x in self.x for c in component] if len(run.snapshots) else []
         points = [*(run.responses[k] for k in watched), *seen]
         looks = [OutputTimes(slice(0, len(watched)), run.time, run.order)]
         looks.append(OutputTimes(slice(len(watched), len(points)), run.snapshots, 0))
-        found = component_motion(run, LawQuestion(component, laws, points, looks))
+        found = component_motion(run, component, points, looks)
         self.value[watched], self.step_error[watched] = found.looked[0], found.step_error
         self.truncation[watched] = found.truncation
         if seen:
@@ -251,7 +263,8 @@ class _Answer:
         run = self.run
         driven = [k for k, d in enumerate(run.drives) if moving(d) in component]
         loads = {p: load for p, load in run.loads.items() if p[0] in component}
-        if not driven and not loads:
+        kicks = {p: kick for p, kick in run.kicks.items() if p[0] in component}
+        if not driven and not loads and not kicks:
             return
         some = replace(
             run,
@@ -259,6 +272,7 @@ class _Answer:
             forces=tuple(run.forces[k] for k in driven),
             responses=tuple(run.responses[k] for k in watched),
             loads=loads,
+            kicks=kicks,
         )
         found = solve_linear(some)
         self.value[watched], self.step_error[watched] = found.value, found.error
@@ -279,7 +293,7 @@ class _Answer:
             x=self.x,
             snapshot=self.snapshot[seen],
             cost=Cost("collocation", elements, self.modes, self.stages),
-            balance=partial(balance, asked),
+            balance=partial(of_chain, asked),
             error=self.step_error[:, kept] + self.truncation[:, None],
             mesh_error=partial(against_spans, asked.kept, value, collocate),
             stopped=ended_by(self.error),

@@ -1,10 +1,12 @@
-"""Motion in modes under a tension that pulsates."""
+"""Chains and spans as modes that tension and damping couple."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -51,10 +53,34 @@ class ModalSystem:
         """Modes that tension or damping couple, those of each block in order."""
         return tuple(clusters((self.geometric != 0) | (self.damping != 0)))
 
+    @computed
+    def coupling(self) -> Real | None:
+        """What dampers couple, their own share left out; None where they couple none."""
+        beside = self.damping - np.diag(np.diag(self.damping))
+        return beside if beside.any() else None
+
     def only(self, modes: Index) -> ModalSystem:
         """Return that of some modes."""
         square = np.ix_(modes, modes)
         return ModalSystem(self.eigenvalue[modes], self.geometric[square], self.damping[square])
+
+
+class ChainModes(NamedTuple):
+    """All modes of a component of a chain."""
+
+    system: ModalSystem
+    shape: Real  # (k, nodes, width) of unit modal mass
+
+
+def chain_modes(model: Compiled, component: tuple[str, ...]) -> ChainModes:
+    """Return all modes of a component, of plain lumps where corrected ones have negative mass."""
+    chain = model.chain
+    if chain.only(component).spurious:
+        plain = chain._replace(mass=chain.mass * np.eye(chain.mass.shape[1]))
+        model = dataclasses.replace(model, chain=plain)
+    basis = _Basis.of(model, component, None)
+    half = np.linalg.inv(np.linalg.cholesky(basis.mass))
+    return ChainModes(_reduced(model, component, basis), np.tensordot(half, basis.shape, 1))
 
 
 def modal_system(model: Compiled, number: int | None) -> ModalSystem:
@@ -88,7 +114,10 @@ def _together(parts: Sequence[ModalSystem], number: int | None) -> ModalSystem:
 
 def _of_component(model: Compiled, component: tuple[str, ...], number: int | None) -> ModalSystem:
     """Return the modes of one component."""
-    basis = _Basis.of(model, component, number)
+    return _reduced(model, component, _Basis.of(model, component, number))
+
+
+def _reduced(model: Compiled, component: tuple[str, ...], basis: _Basis) -> ModalSystem:
     half = np.linalg.inv(np.linalg.cholesky(basis.mass))
     geometric = _cut(half @ basis.geometric @ half.T)
     damping = half @ _damping(model, basis) @ half.T + _modal(model, component, basis.eigenvalue)
@@ -137,6 +166,7 @@ class _Basis:
 
     tension: float  # mean [N]
     eigenvalue: Real  # (k,)
+    shape: Real  # (k, nodes, width)
     mass: Real  # (k, k) of inertia
     geometric: Real  # (k, k) of slopes
     dragged: Real  # (k, k) of drag and dashpots
@@ -178,7 +208,7 @@ class _Basis:
         # what rounding cannot tell from 0 is 0
         eigenvalue = np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue)
         tension = model.scene.mean_tension
-        return cls(tension, eigenvalue, mass, geometric, dragged, stiffness, resisted)
+        return cls(tension, eigenvalue, shape, mass, geometric, dragged, stiffness, resisted)
 
 
 def _at_gauss_points(

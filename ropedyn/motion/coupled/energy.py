@@ -1,0 +1,151 @@
+"""Where the energy of a chain is, by steps in which what acts on modes is constant.
+
+Work that forces of laws and the tension do in a step is exact, so that nothing is lost where
+nothing drives; of what drives, the force in the middle of a step times the way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.array import Real
+from ...base.errors import SceneError, SolveError
+from ...chain.port import moving
+from ..acting import scene_laws
+from ..history import Balance
+from ..request import TOLERANCE, Run
+from ..smooth.steps import Steps
+from ..smooth.system import OutputTimes
+from .steps import CoupledPassage, StepsTaken
+from .system import CoupledSystem, moving_together
+
+NAMES = ("kinetic", "strain", "input", "dissipated", "laws")
+MOST_STEPS = 4_000_000
+ROUNDING = 1e-12  # Energies of less than this part of the largest are not told.
+
+
+def balance(run: Run) -> Balance:
+    """Return the energies at the times of a run on a chain."""
+    total = np.zeros((len(NAMES), len(run.time)))
+    laws = scene_laws(run.model.scene)
+    calls = any(one.law.kind == "call" for one in laws)
+    for component in moving_together(run.model):
+        if calls or any(moving(place) in component for place in run.places):
+            look = OutputTimes(slice(0, 0), run.time, 0)
+            total += _agreed(CoupledSystem.coupled(run, component, [], [look]), run)
+    energy = dict(zip(NAMES, total))
+    if all(one.law.kind == "power" for one in laws):
+        del energy["laws"]
+    return Balance(energy)
+
+
+def _agreed(system: CoupledSystem, run: Run) -> Real:
+    """Halve the steps until two runs agree within the tolerance, (names, t)."""
+    tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    h, before = system.first_step, None
+    span = float(run.time[-1] - run.time[0])
+    while True:
+        passage = EnergyPassage(system, h)
+        passed = passage.through(run.progress)
+        if passed.error is not None and (passed.settles or span / h > MOST_STEPS):
+            raise passed.error
+        now = None if passed.error is not None else passage.energies(run.time)
+        if now is not None and before is not None:
+            apart = np.abs(now - before).max(initial=0.0)
+            if apart <= tolerance * np.abs(now).max(initial=0.0):
+                return now
+        if span / h > MOST_STEPS:
+            raise SolveError(f"energy is not known to {tolerance:g} with {MOST_STEPS} steps")
+        h, before = h / 2, now
+
+
+class EnergyPassage(CoupledPassage):
+    """A run that accounts for energy at the ends of steps."""
+
+    def __init__(self, system: CoupledSystem, h: float) -> None:
+        super().__init__(system, h)
+        edges = self._edges()
+        self._speed = system.linear(system.points, edges, 1).T
+        self._edge, self._done = edges, 0
+        self._energy = np.zeros((len(NAMES), len(edges)))
+        self._struck()
+
+    def energies(self, time: Real) -> Real:
+        """Return them at some times, on straight lines between the ends of steps."""
+        gone = self._energy.copy()
+        gone[2:] = gone[2:].cumsum(axis=1)
+        return np.stack([np.interp(time, self._edge, one) for one in gone])
+
+    def _record(self, block: Steps, found: StepsTaken, known: Real, is_last: bool) -> None:
+        at = slice(self._done, self._done + block.number + 1)
+        Q, V = known + found.state[:, 0], self._speed[at] + found.state[:, 1]
+        self._energy[:2, at] = self._stored(self._edge[at], Q, V)
+        into = slice(at.start + 1, at.stop)
+        before = V.copy()
+        for k, kick in self._blow.items():
+            if at.start <= k < at.stop:
+                before[k - at.start] -= kick
+        self._energy[2:, into] += self._powers(block, found, Q, (V[:-1], before[1:]))
+        self._energy[2, at.start : at.stop] += self._by_blows(at, V, is_last)
+        self._done += block.number
+
+    def _stored(self, time: Real, Q: Real, V: Real) -> Real:
+        """Return kinetic energy and strain."""
+        system = self.system
+        bent = np.einsum("tk,kl,tl->t", Q, system.form, Q, optimize=True)
+        strain = (system.modes.square * Q**2).sum(axis=1) / 2
+        strain += system.added(time) * bent / 2 + system.stretching / 8 * bent**2
+        return np.stack([(V**2).sum(axis=1) / 2, strain])
+
+    def _powers(self, block: Steps, found: StepsTaken, Q: Real, beside: tuple[Real, Real]) -> Real:
+        """Return what is put in, dissipated and taken by laws in each step.
+
+        `beside` are the velocities it begins and ends with.
+        """
+        system, h = self.system, block.h
+        way = np.diff(Q, axis=0)
+        time = block.begin + h * np.arange(block.number + 1)
+        given = np.zeros(block.number)
+        for push, force in zip(system.push, system.pushes):
+            if not isinstance(force, float):
+                given += force.value((time[1:] + time[:-1]) / 2) * (way @ push)
+        if system.pulsation is not None:
+            bent = np.einsum("tk,kl,tl->t", Q, system.form, Q, optimize=True)
+            given += np.diff(system.added(time)) * (bent[1:] + bent[:-1]) / 4
+        mean = way / h
+        lost = h / 3 * ((beside[0] ** 2 + 4 * mean**2 + beside[1] ** 2) @ system.modes.sigma)
+        if system.coupling is not None:
+            lost += h * np.einsum("tk,kl,tl->t", mean, system.coupling, mean, optimize=True)
+        work = found.force * (way @ system.row.T)
+        for k, one in enumerate(system.acting):
+            if one.law.kind == "power":
+                lost -= work[:, k]
+        by_laws = [k for k, one in enumerate(system.acting) if one.law.kind != "power"]
+        return np.stack([given, lost, -work[:, by_laws].sum(axis=1)])
+
+    def _struck(self) -> None:
+        """Gather the blows at an instant, by the ends of steps they fall on."""
+        system = self.system
+        self._blow: dict[int, Real] = {}
+        for push, force in zip(system.push, system.pushes):
+            for when, size in () if isinstance(force, float) else force.blows:
+                if self._edge[0] <= when <= self._edge[-1]:
+                    at = int(np.abs(self._edge - when).argmin())
+                    self._blow[at] = self._blow.get(at, 0.0) + size * push
+
+    def _by_blows(self, at: slice, V: Real, is_last: bool) -> Real:
+        """Return what blows put in: their impulses times the mean of the velocities beside."""
+        given = np.zeros(len(V))
+        for k, kick in self._blow.items():
+            if at.start <= k < at.stop - (not is_last):
+                given[k - at.start] = kick @ (V[k - at.start] - kick / 2)
+        return given
+
+
+def of_chain(run: Run) -> Balance:
+    """Return the energies of a motion that another method told."""
+    if run.coarse is not None:
+        raise SceneError("energy is not told where spans begin with shapes or velocities")
+    return balance(replace(run, snapshots=np.zeros(0)))

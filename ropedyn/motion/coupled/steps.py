@@ -1,0 +1,148 @@
+"""Steps in which what couples modes pushes them by constant forces; see csrc/volterra/modal.h."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ... import _core
+from ...base.array import Real
+from ...base.errors import SolveError
+from ..acting import core_numbers
+from ..smooth.collocation import Oscillating
+from ..smooth.laws import LawFailure
+from ..smooth.passage import LawPassage, Passed
+from ..smooth.steps import Steps
+from .system import CoupledSystem
+
+BLOCK = 1 << 21  # So many numbers of states are kept at a time.
+
+
+class ConstantStep(NamedTuple):
+    """How modes move over a step, or a part of it, under a constant force."""
+
+    change: Real  # (2, 2, k) q and q' per q and q' at its beginning
+    push: Real  # (2, k) and per force
+
+    @classmethod
+    def of(cls, modes: Oscillating, h: float, theta: float = 1.0) -> ConstantStep:
+        """Return that of a part of a step."""
+        reached = modes.reached(h, theta)
+        return cls(reached.change, reached.pushed.sum(axis=0))
+
+
+class Stepper:
+    """Steps of a system, one after another, from a state that it keeps."""
+
+    def __init__(self, system: CoupledSystem, state: Real | None = None) -> None:
+        self.system = system
+        count, laws = len(system.modes.sigma), len(system.acting)
+        self.state = np.zeros((2, count)) if state is None else state
+        self.pushed, self.force = np.zeros(count), np.zeros(laws)
+        self.largest, self.size = np.zeros(1), np.zeros(laws)
+        self._laws = (
+            *core_numbers([one.law for one in system.acting]),
+            tuple(one.law.call for one in system.acting),
+        )
+        self._step: tuple[float, ConstantStep] | None = None
+
+    def take(self, begin: float, h: float, known: Real) -> StepsTaken:
+        """Take steps from `begin`; known (steps + 1, k) is how the modes move by themselves."""
+        system, number = self.system, len(known) - 1
+        if self._step is None or self._step[0] != h:
+            self._step = h, ConstantStep.of(system.modes, h)
+        step = self._step[1]
+        added = system.added(begin + h * np.arange(number + 1))
+        state, pushed, force = (
+            np.concatenate([one[None], np.zeros((number, *one.shape))])
+            for one in (self.state, self.pushed, self.force)
+        )
+        made, residual, failure = _core.modal_steps(
+            (begin, h, step.change, step.push),
+            self._laws,
+            (
+                system.row,
+                system.form,
+                system.coupling,
+                (added[1:] + added[:-1]) / 2,
+                system.stretching,
+            ),
+            np.ascontiguousarray(known),
+            state,
+            pushed,
+            force,
+            self.largest,
+            self.size,
+        )
+        self.state, self.pushed, self.force = state[made], pushed[made], force[made]
+        found = StepsTaken(state[: made + 1], pushed[1 : made + 1], force[1 : made + 1])
+        return found if made == number else found._replace(error=(residual, failure))
+
+
+class StepsTaken(NamedTuple):
+    """What steps found."""
+
+    state: Real  # (steps + 1, 2, k)
+    pushed: Real  # (steps, k)
+    force: Real  # (steps, laws)
+    error: tuple[float, Any] | None = None  # the residual and the failure of the step after them
+
+
+class CoupledPassage(LawPassage):
+    """A run with steps of one length at most."""
+
+    system: CoupledSystem
+    falls = 2.0
+
+    def through(self, progress: Callable[[float], object]) -> Passed:
+        """Take all steps."""
+        system, done = self.system, 0
+        edges = self._edges()
+        known = system.linear(system.points, edges, 0).T
+        stepper = Stepper(system)
+        for block in self._blocks(max(BLOCK // (2 * known.shape[1]), 1)):
+            found = stepper.take(block.begin, block.h, known[done : done + block.number + 1])
+            made = len(found.pushed)
+            done += made
+            is_last = made == block.number and done == len(known) - 1
+            self._record(block._replace(number=made), found, known[done - made : done + 1], is_last)
+            if found.error is not None:
+                when = block.begin + made * block.h
+                error = self._failed(when, *found.error)
+                settles = found.error[1] is not None
+                return Passed(self.looked, when, done, error, settles)
+            progress(done / (len(known) - 1))
+        return Passed(self.looked, float(system.time[-1]), done)
+
+    def _edges(self) -> Real:
+        """Return when steps begin, and the last one ends."""
+        begins = [s.begin + s.h * np.arange(s.number) for s in self.all_steps]
+        return np.concatenate([*begins, [self.all_steps[-1].end]])
+
+    def _record(self, block: Steps, found: StepsTaken, known: Real, is_last: bool) -> None:
+        """Keep what is asked for of some steps."""
+        # accelerations are of forces on straight lines through the middles of steps
+        rise = np.gradient(found.pushed, axis=0) if len(found.pushed) > 1 else 0 * found.pushed
+        both = np.concatenate([found.pushed, rise], axis=1)
+        self._look(block, both, found.state[:-1], is_last)
+
+    def _row(self, number: int, h: float, theta: float) -> tuple[Real, Real]:
+        if (h, theta, number) not in self._rows:
+            look, modes = self.system.looks[number], self.system.modes
+            some = modes.some(slice(0, 0), look.output)
+            own, forced = some.modal_rows(modes.reached(h, theta), look.order, h)
+            rise = (theta - 0.5) * some.seen if look.order == 2 else np.zeros_like(some.seen)
+            forced = np.concatenate([forced.sum(axis=1), rise], axis=1)
+            self._rows[h, theta, number] = own.reshape(len(own), -1), forced
+        return self._rows[h, theta, number]
+
+    def _failed(self, when: float, residual: float, failure: Any) -> Any:
+        if failure is not None:
+            return LawFailure(*failure).told(self.system.laws)
+        names = ", ".join(dict.fromkeys(law.name for law in self.system.laws))
+        return SolveError(
+            f"what couples modes, {names or 'the tension'}, does not converge at t = {when!r} s: "
+            f"the residual is {residual:.3g}"
+        )

@@ -1,1 +1,0 @@
-"""Motion over time by implicit steps along the chain."""

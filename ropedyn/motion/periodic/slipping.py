@@ -1,0 +1,212 @@
+"""Steady states with friction that slips: exact phases until nothing changes, or steps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Protocol
+
+import numpy as np
+
+from ...base.answer import Cost
+from ...base.array import Complex, Real
+from ...base.errors import SolveError
+from ...chain.port import moving
+from ...response.frf import FRF
+from ...scene.force import Sine
+from ...signal.spectrum import amplitudes
+from ..coupled.steps import Stepper
+from ..coupled.system import CoupledSystem, moving_together
+from ..phases.components import Look, Moving, moving_components, rest, why_not_events
+from ..phases.pieces import pieces
+from ..phases.walk import PhaseWalk, Visit
+from ..request import Run
+from ..smooth.system import OutputTimes
+from .asked import SteppedSine
+
+WINDOW = 8  # The amplitude is looked at after so many periods at least.
+LOOKS = 4  # So many looks in a row must agree.
+LONGEST = 100_000  # A motion that changes after so many periods is said not to settle.
+TOLERANCE = 1e-3  # Of the steady state where none is given.
+SAMPLES = 1024  # Of a period, in exact phases: what slips has harmonics that fall as 1/k^3.
+MODES = 64  # Of continuous spans; half of them tell the error.
+FEWEST, MOST = 128, 1 << 15  # A period takes from so many steps to so many.
+
+
+class Goes(Protocol):
+    """A motion that goes on from look to look."""
+
+    mine: list[int]  # Which of the responses it has
+
+    def window(self, frequency: float, periods: range) -> Complex:
+        """Follow some periods; return the mean of the amplitudes."""
+
+
+def slipping(asked: SteppedSine, turn: Callable[[float], int]) -> FRF:
+    """Follow the motion through the frequencies in their order, see `Model.stepped_sine`.
+
+    `turn` says after how many periods of a frequency everything that acts begins anew.
+    """
+    run = Run(asked.model, np.array([0.0, 1.0]), (asked.drive,), (), asked.responses)
+    push = Sine(asked.amplitude, float(asked.frequency[0]), phase=math.pi / 2)
+    exact = not why_not_events(run)
+    found: Iterator[tuple[Complex, Real]]
+    found = _by_phases(asked, run, push) if exact else _by_steps(asked, run, push, turn)
+    value = np.zeros((len(asked.responses), len(asked.frequency)), dtype=np.complex128)
+    error = np.zeros(value.shape)
+    for k, (one, wrong) in enumerate(found):
+        size = np.abs(one)
+        value[:, k] = one / asked.amplitude
+        error[:, k] = np.divide(wrong, size, out=np.zeros_like(size), where=size > 0)
+        asked.progress((k + 1) / len(asked.frequency))
+    cost = Cost("events" if exact else "steps", len(asked.model.x) - 1, asked.model.size)
+    stable = np.ones(len(asked.frequency), dtype=np.bool_)  # or it would not have settled
+    return asked.answer(asked.frequency, value, error, cost, stable)
+
+
+# --- exact phases ---------------------------------------------------------------------------------
+
+
+class Phases:
+    """One component from event to event."""
+
+    def __init__(self, one: Moving, push: Sine) -> None:
+        self.one, self.push = one, push
+        ((self.rows, self.mine),) = one.watched
+        self.walk = PhaseWalk(one.system)
+        self.now = rest(one, 0.0)
+        self.mode: tuple[int, ...] | None = None
+
+    def window(self, frequency: float, periods: range) -> Complex:
+        """Follow some periods; return the mean of the amplitudes."""
+        number = SAMPLES * len(periods)
+        time = np.arange(number + 1) / (SAMPLES * frequency)
+        force = [Sine(self.push.amplitude, frequency, phase=self.push.phase)]
+        value = np.zeros((len(self.mine), number))
+        last: Visit | None = None
+        for visit in self.walk.visits(self.now, pieces(force, time), self.mode):
+            i, j = np.searchsorted(time[:-1], [visit.start, visit.stop])
+            value[:, i:j] = visit.outputs(self.rows).at(time[i:j] - visit.start)
+            last = visit
+        assert last is not None
+        self.now, self.mode = last.end(), last.phase.mode
+        return np.asarray(amplitudes(value, SAMPLES).mean(axis=1))
+
+
+def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[tuple[Complex, Real]]:
+    """Yield the amplitudes and how far they are off, of one frequency after another."""
+
+    def of(modes: int) -> list[Goes]:
+        given = Run(run.model, run.time, run.drives, (push,), run.responses)
+        look = Look(run.responses, run.time, 0)
+        return [Phases(one, push) for one in moving_components(given, [look], modes)]
+
+    rows, fewer = of(MODES), of(MODES // 2) if asked.model.element == "continuous" else None
+    for f in asked.frequency.tolist():
+        after, left = _settled(asked, rows, f, 1)
+        off = np.full(len(after), left)
+        if fewer is not None:
+            off += 2 * np.abs(_settled(asked, fewer, f, 1)[0] - after)
+        yield after, off
+
+
+# --- steps ----------------------------------------------------------------------------------------
+
+
+class Steps:
+    """One component in steps of all its modes."""
+
+    def __init__(self, system: CoupledSystem, mine: list[int], push: Sine) -> None:
+        self.system, self.mine, self.push = system, mine, push
+        self.state = np.zeros((2, len(system.modes.sigma)))  # all of the motion
+        self.count = FEWEST
+
+    def window(self, frequency: float, periods: range) -> Complex:
+        """Follow some periods; return the mean of the amplitudes."""
+        modes, omega, count = self.system.modes, 2 * np.pi * frequency, self.count
+        turn = np.exp(2j * np.pi / count * np.arange(count * len(periods) + 1))
+        still = modes.square - omega**2 + 2j * omega * modes.sigma
+        own = self.push.amplitude * self.system.push.sum(axis=0) / still
+        known = (own * turn[:, None]).real
+        first = np.stack([own.real, (1j * omega * own).real])
+        stepper = Stepper(self.system, self.state - first)
+        found = stepper.take(periods[0] / frequency, 1 / (frequency * count), known)
+        if found.error is not None:
+            raise SolveError(f"frequency {frequency!r} Hz: a step does not converge")
+        self.state = stepper.state + first
+        seen = modes.seen[len(modes.sigma) :] @ (known[:-1] + found.state[:-1, 0]).T
+        return np.asarray(amplitudes(seen, count).mean(axis=1))
+
+
+def _by_steps(
+    asked: SteppedSine, run: Run, push: Sine, turn: Callable[[float], int]
+) -> Iterator[tuple[Complex, Real]]:
+    """Yield the amplitudes and how far they are off, of one frequency after another."""
+    given = Run(run.model, run.time, run.drives, (push,), run.responses)
+    rows = []
+    for component in moving_together(asked.model):
+        mine = [k for k, point in enumerate(asked.responses) if moving(point) in component]
+        points = [asked.responses[k] for k in mine]
+        look = OutputTimes(slice(0, len(points)), run.time, 0)
+        system = CoupledSystem.coupled(given, component, points, [look])
+        if len(system.push) or any(one.law.call for one in system.acting):
+            rows.append(Steps(system, mine, push))
+    tolerance = asked.tolerance or TOLERANCE
+    for f in asked.frequency.tolist():
+        before: Complex | None = None
+        apart = np.full(len(asked.responses), math.inf)
+        for count in 2 ** np.arange(FEWEST.bit_length() - 1, MOST.bit_length()):
+            for one in rows:
+                one.count = int(count)
+            after, left = _settled(asked, rows, f, turn(f))
+            if before is not None:
+                # where velocities turn, errors fall with the step and two runs may agree by chance
+                now = np.abs(after - before)
+                apart = np.where(np.isinf(apart), now * 2, np.maximum(now, apart / 2))
+                if (2 * apart <= tolerance * np.abs(after).max()).all():
+                    break
+            before = after
+        else:
+            share = float((apart / np.abs(after).max()).max())
+            raise SolveError(
+                f"frequency {f!r} Hz: with {MOST} steps a period the amplitude is still known to "
+                f"{share:.1e} only: ask for a larger tolerance"
+            )
+        yield after, 2 * apart + left
+
+
+# --- until nothing changes ------------------------------------------------------------------------
+
+
+def _settled(
+    asked: SteppedSine, rows: list[Goes], frequency: float, turn: int
+) -> tuple[Complex, float]:
+    """Return the amplitudes when they stay, and what is left."""
+    periods = math.ceil(WINDOW / turn) * turn
+    seen: list[Complex] = []
+    for k in range(max(LONGEST // periods, LOOKS + 1)):
+        found = np.zeros(len(asked.responses), dtype=np.complex128)
+        for one in rows:
+            found[one.mine] = one.window(frequency, range(k * periods, (k + 1) * periods))
+        seen.append(found)
+        if len(seen) <= LOOKS:
+            continue
+        changes = np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1)
+        size = np.abs(seen[-1]).max()
+        left = _left(changes)
+        if left <= (asked.tolerance or TOLERANCE) / 2 * size:
+            return seen[-1], left
+    raise SolveError(
+        f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the amplitude "
+        f"changes by {float(changes[-1] / size):.1e} of itself in {periods} periods"
+    )
+
+
+def _left(changes: Real) -> float:
+    """Return what geometric changes add up to from now on, infinite where they grow."""
+    half = len(changes) // 2
+    early, late = float(changes[:half].max()), float(changes[half:].max())
+    if late == 0:
+        return 0.0
+    ratio = math.sqrt(late / early) if early > 0 else math.inf
+    return late * ratio / (1 - ratio) if ratio < 1 else math.inf
