@@ -190,7 +190,13 @@ def space_triples(
     rates: _Complex, series: _Real, length: float, halvings: int, doublings: int, gentle: float, /
 ) -> tuple[_Complex, int, bool]: ...
 def space_factor(
-    D: _Complex, G: _Complex, Q: _Complex, N: _Complex, fixed: NDArray[np.uint8], /
+    D: _Complex,
+    G: _Complex,
+    Q: _Complex,
+    N: _Complex,
+    fixed: NDArray[np.uint8],
+    closed: bool,
+    /,
 ) -> tuple[_Real, _Integers, int]: ...
 def space_solve(factors: _Real, pivots: _Integers, right: _Real, /) -> _Real: ...
 def space_respond(
@@ -199,6 +205,7 @@ def space_respond(
     Q: _Complex,
     N: _Complex,
     fixed: NDArray[np.uint8],
+    closed: bool,
     right: _Complex,
     /,
 ) -> _Complex: ...
@@ -208,6 +215,7 @@ def space_apply(
     Q: _Complex,
     N: _Complex,
     fixed: NDArray[np.uint8],
+    closed: bool,
     vectors: _Complex,
     /,
 ) -> _Complex: ...
@@ -217,6 +225,7 @@ def space_iterate(
     Q: _Complex,
     N: _Complex,
     fixed: NDArray[np.uint8],
+    closed: bool,
     factors: _Real,
     pivots: _Integers,
     vectors: _Real,
