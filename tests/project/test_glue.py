@@ -683,7 +683,9 @@ REFUSED = {
         "vectors must have 18 entries along axis 2, got 5",
     ),
     "iterations of other factors": (
-        lambda: _core.space_iterate(*BLOCKS, FIXED, False, FACTORED[0][:, :5], FACTORED[1], SOLVED, 2),
+        lambda: _core.space_iterate(
+            *BLOCKS, FIXED, False, FACTORED[0][:, :5], FACTORED[1], SOLVED, 2
+        ),
         ValueError,
         "factors must have 18 entries along axis 1, got 5",
     ),
