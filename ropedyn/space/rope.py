@@ -257,7 +257,7 @@ class SpaceRope:
         soft = float(np.diagonal(self.soft.real, axis1=2, axis2=3)[..., 4:].min())
         bent = np.abs(self.bend[..., :3, :3]).max(axis=(1, 2, 3))
         least = float(((bent @ self.length) ** 2 + 1) / self.length.sum() ** 2)
-        mass, gives = float(self.inertia[:, 1, 1].max()), self.softest[1]
+        mass, gives = float(self.inertia[:, 1, 1].real.max()), self.softest[1]
         return mass, soft if self.softest[0] > 0 else 0.0, soft * self.pull / 2, gives, least
 
     def scale(self, which: Index, eigenvalue: ArrayLike) -> Real:
