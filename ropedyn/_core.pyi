@@ -148,7 +148,13 @@ def space_triples(
     rates: _Complex, series: _Real, length: float, halvings: int, doublings: int, gentle: float, /
 ) -> tuple[_Complex, int, bool]: ...
 def space_factor(
-    D: _Complex, G: _Complex, Q: _Complex, N: _Complex, fixed: NDArray[np.uint8], /
+    D: _Complex,
+    G: _Complex,
+    Q: _Complex,
+    N: _Complex,
+    fixed: NDArray[np.uint8],
+    closed: bool,
+    /,
 ) -> tuple[_Real, _Integers, int]: ...
 def space_solve(factors: _Real, pivots: _Integers, right: _Real, /) -> _Real: ...
 def space_respond(
@@ -157,6 +163,7 @@ def space_respond(
     Q: _Complex,
     N: _Complex,
     fixed: NDArray[np.uint8],
+    closed: bool,
     right: _Complex,
     /,
 ) -> _Complex: ...
@@ -166,6 +173,7 @@ def space_apply(
     Q: _Complex,
     N: _Complex,
     fixed: NDArray[np.uint8],
+    closed: bool,
     vectors: _Complex,
     /,
 ) -> _Complex: ...
@@ -175,6 +183,7 @@ def space_iterate(
     Q: _Complex,
     N: _Complex,
     fixed: NDArray[np.uint8],
+    closed: bool,
     factors: _Real,
     pivots: _Integers,
     vectors: _Real,

@@ -93,7 +93,8 @@ done:
 }
 
 /* a view of D, G, Q, N and what is fixed: 0, or -1 and an exception */
-static int band_parse(PyObject *const o[5], struct py_kept *kept, struct rd_space_band *band)
+static int band_parse(PyObject *const o[5], int closed, struct py_kept *kept,
+                      struct rd_space_band *band)
 {
     static const char *const names[] = {"D", "G", "Q", "N"};
     const double *blocks[4];
@@ -120,6 +121,7 @@ static int band_parse(PyObject *const o[5], struct py_kept *kept, struct rd_spac
         .Q = blocks[2],
         .N = blocks[3],
         .fixed = py_keep(kept, o[4], NPY_UINT8, 2, rows, "fixed"),
+        .closed = closed,
     };
     return band->fixed == NULL ? -1 : 0;
 }
@@ -131,13 +133,15 @@ PyObject *py_space_factor(PyObject *module, PyObject *arguments)
     PyObject *o[5], *factor = NULL, *pivot = NULL, *result = NULL;
     struct py_kept kept = {0};
     struct rd_space_band band;
-    if (!PyArg_ParseTuple(arguments, "OOOOO", o, o + 1, o + 2, o + 3, o + 4))
+    int closed;
+    if (!PyArg_ParseTuple(arguments, "OOOOOp", o, o + 1, o + 2, o + 3, o + 4, &closed))
         return NULL;
-    if (band_parse(o, &kept, &band) < 0)
+    if (band_parse(o, closed, &kept, &band) < 0)
         goto done;
     const npy_intp lines = (npy_intp)band.lines;
     const npy_intp size = (npy_intp)((2 * band.parts + 1) * band.width);
-    factor = py_new(NPY_DOUBLE, 3, (npy_intp[]){lines, size, (npy_intp)rd_space_rows(band.width)});
+    factor = py_new(NPY_DOUBLE, 3,
+                    (npy_intp[]){lines, size, (npy_intp)rd_space_rows(band.width, closed)});
     pivot = py_new(NPY_INT32, 2, (npy_intp[]){lines, size});
     if (factor == NULL || pivot == NULL)
         goto done;
@@ -159,6 +163,7 @@ PyObject *py_space_solve(PyObject *module, PyObject *arguments)
 {
     (void)module;
     PyObject *factor, *rows, *right, *result = NULL;
+    double *work = NULL;
     struct py_kept kept = {0};
     if (!PyArg_ParseTuple(arguments, "OOO", &factor, &rows, &right))
         return NULL;
@@ -166,8 +171,10 @@ PyObject *py_space_solve(PyObject *module, PyObject *arguments)
     if (band == NULL)
         goto done;
     const npy_intp lines = py_kept_length(&kept, 0), size = py_kept_length(&kept, 1);
-    const npy_intp width = py_kept_length(&kept, 2) == (npy_intp)rd_space_rows(3) ? 3 : RD_SIX;
-    if (py_kept_length(&kept, 2) != (npy_intp)rd_space_rows((size_t)width)) {
+    const size_t wide = (size_t)py_kept_length(&kept, 2);
+    const int closed = wide == rd_space_rows(3, 1) || wide == rd_space_rows(RD_SIX, 1);
+    const npy_intp width = wide == rd_space_rows(3, closed) ? 3 : RD_SIX;
+    if (wide != rd_space_rows((size_t)width, closed)) {
         PyErr_SetString(PyExc_ValueError, "factors must be those of 3 or 6 coordinates");
         goto done;
     }
@@ -183,10 +190,18 @@ PyObject *py_space_solve(PyObject *module, PyObject *arguments)
     if (result == NULL)
         goto done;
     double *to = PyArray_DATA((PyArrayObject *)result);
+    work = PyMem_RawMalloc((columns * (size_t)size + 1) * sizeof *work);
+    if (work == NULL) {
+        Py_CLEAR(result);
+        PyErr_NoMemory();
+        goto done;
+    }
     Py_BEGIN_ALLOW_THREADS
-    rd_space_solve((size_t)width, (size_t)lines, (size_t)size, columns, band, pivot, to);
+    rd_space_solve((size_t)width, closed, (size_t)lines, (size_t)size, columns, band, pivot, to,
+                   work);
     Py_END_ALLOW_THREADS
 done:
+    PyMem_RawFree(work);
     py_kept_release(&kept);
     return result;
 }
@@ -197,9 +212,10 @@ PyObject *py_space_apply(PyObject *module, PyObject *arguments)
     PyObject *o[5], *given, *result = NULL;
     struct py_kept kept = {0};
     struct rd_space_band band;
-    if (!PyArg_ParseTuple(arguments, "OOOOOO", o, o + 1, o + 2, o + 3, o + 4, &given))
+    int closed;
+    if (!PyArg_ParseTuple(arguments, "OOOOOpO", o, o + 1, o + 2, o + 3, o + 4, &closed, &given))
         return NULL;
-    if (band_parse(o, &kept, &band) < 0)
+    if (band_parse(o, closed, &kept, &band) < 0)
         goto done;
     const npy_intp size = (npy_intp)((2 * band.parts + 1) * band.width);
     const npy_intp shape[] = {(npy_intp)band.lines, -1, size};
@@ -229,14 +245,15 @@ PyObject *py_space_iterate(PyObject *module, PyObject *arguments)
     int times;
     struct py_kept kept = {0};
     struct rd_space_band band;
-    if (!PyArg_ParseTuple(arguments, "OOOOOOOOi", o, o + 1, o + 2, o + 3, o + 4, &factor, &rows,
-                          &given, &times))
+    int closed;
+    if (!PyArg_ParseTuple(arguments, "OOOOOpOOOi", o, o + 1, o + 2, o + 3, o + 4, &closed, &factor,
+                          &rows, &given, &times))
         return NULL;
-    if (check_power(times, "times") < 0 || band_parse(o, &kept, &band) < 0)
+    if (check_power(times, "times") < 0 || band_parse(o, closed, &kept, &band) < 0)
         goto done;
     const npy_intp lines = (npy_intp)band.lines;
     const npy_intp size = (npy_intp)((2 * band.parts + 1) * band.width);
-    const npy_intp wide = (npy_intp)rd_space_rows(band.width);
+    const npy_intp wide = (npy_intp)rd_space_rows(band.width, closed);
     const double *lu =
         py_keep(&kept, factor, NPY_DOUBLE, 3, (npy_intp[]){lines, size, wide}, "factors");
     const int32_t *pivot =
@@ -252,7 +269,7 @@ PyObject *py_space_iterate(PyObject *module, PyObject *arguments)
         goto done;
     const npy_intp columns = PyArray_DIM(x, 1);
     form = py_new(NPY_DOUBLE, 4, (npy_intp[]){lines, 2, columns, columns});
-    work = PyMem_RawMalloc((size_t)(columns * size + 1) * sizeof *work);
+    work = PyMem_RawMalloc((size_t)(2 * columns * size + 1) * sizeof *work);
     if (form == NULL || work == NULL) {
         if (work == NULL)
             PyErr_NoMemory();
@@ -278,9 +295,10 @@ PyObject *py_space_respond(PyObject *module, PyObject *arguments)
     struct py_kept kept = {0};
     struct rd_workspace workspace = {0};
     struct rd_space_band band;
-    if (!PyArg_ParseTuple(arguments, "OOOOOO", o, o + 1, o + 2, o + 3, o + 4, &right))
+    int closed;
+    if (!PyArg_ParseTuple(arguments, "OOOOOpO", o, o + 1, o + 2, o + 3, o + 4, &closed, &right))
         return NULL;
-    if (band_parse(o, &kept, &band) < 0)
+    if (band_parse(o, closed, &kept, &band) < 0)
         goto done;
     const npy_intp size = (npy_intp)((2 * band.parts + 1) * band.width);
     const npy_intp shape[] = {(npy_intp)band.lines, -1, size};
@@ -315,8 +333,8 @@ done:
 static int rope_parse(PyObject *object, struct py_kept *kept, struct rd_space *rope)
 {
     PyObject *o[10];
-    if (!PyArg_ParseTuple(object, "OOOOOOOOOO", o, o + 1, o + 2, o + 3, o + 4, o + 5, o + 6, o + 7,
-                          o + 8, o + 9))
+    if (!PyArg_ParseTuple(object, "OOOOOOOOOOp", o, o + 1, o + 2, o + 3, o + 4, o + 5, o + 6, o + 7,
+                          o + 8, o + 9, &rope->closed))
         return -1;
     if ((rope->length = py_keep(kept, o[0], NPY_DOUBLE, 1, (npy_intp[]){-1}, "length")) == NULL)
         return -1;

@@ -336,37 +336,45 @@ static int piece_add(struct counting *c, size_t p, size_t row)
     return 1;
 }
 
+/* A(row, column) += value, in the lower triangle */
+static void put(struct counting *c, int rows, int row, int column, double value)
+{
+    if (row >= 0 && column >= 0)
+        c->A[row > column ? column * rows + row : row * rows + column] += value;
+}
+
 /* The parts that are left, and all nodes between them and at the ends. */
 static double parts_count(struct counting *c)
 {
+    const size_t nodes = c->parts + !c->rope->closed;
     int place[ALL], rows = 0;
     for (size_t k = 0; k <= c->parts; k++) {
         const int node = k == c->parts ? (int)c->rope->pieces : c->node[k];
-        for (size_t i = 0; i < WIDE; i++)
-            place[2 * k * WIDE + i] =
-                node != INNER && c->rope->held[(size_t)node * WIDE + i] ? -1 : rows++;
+        for (size_t i = 0; i < WIDE; i++) {
+            const int held = node != INNER && c->rope->held[(size_t)node * WIDE + i];
+            place[2 * k * WIDE + i] = k == nodes ? place[i] : held ? -1 : rows++;
+        }
         for (size_t i = 0; i < WIDE && k < c->parts; i++)
             place[(2 * k + 1) * WIDE + i] = rows++;
     }
     assert(rows <= ALL);
     memset(c->A, 0, (size_t)(rows * rows) * sizeof *c->A);
-    for (size_t k = 0; k <= c->parts; k++) {
+    for (size_t k = 0; k < nodes; k++) {
         const int *u = place + 2 * k * WIDE, *f = u + WIDE;
         double N[WIDE * WIDE];
         node_fill(c, k == c->parts ? (int)c->rope->pieces : c->node[k], N);
         for (int i = 0; i < WIDE; i++)
             for (int j = 0; j < WIDE; j++) {
                 const struct triple *t = c->part + k;
-                const double V = N[i * WIDE + j] + (k < c->parts ? t->Q[i][j] : 0);
-                if (u[i] >= 0 && u[j] >= 0)
-                    c->A[u[j] * rows + u[i]] = V;
+                if (j <= i)
+                    put(c, rows, u[i], u[j], N[i * WIDE + j] + (k < c->parts ? t->Q[i][j] : 0));
                 if (k == c->parts)
                     continue;
-                c->A[f[j] * rows + f[i]] = -t->G[i][j] - (i == j ? COMPLIANT : 0);
-                if (u[j] >= 0)
-                    c->A[u[j] * rows + f[i]] = -t->D[i][j] - (i == j);
-                if (i == j && f[WIDE + i] >= 0)
-                    c->A[f[i] * rows + f[WIDE + i]] = 1;
+                if (j <= i)
+                    put(c, rows, f[i], f[j], -t->G[i][j] - (i == j ? COMPLIANT : 0));
+                put(c, rows, f[i], u[j], -t->D[i][j] - (i == j));
+                if (i == j)
+                    put(c, rows, f[i], f[WIDE + i], 1);
             }
     }
     return c->below + negative(c, rows) - (double)(c->parts * WIDE);

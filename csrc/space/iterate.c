@@ -74,6 +74,11 @@ static RD_VECTORS void times(const struct rd_space_band *band, size_t line, size
         product(band, 3, line, part, sign, x, y);
     else
         product(band, RD_SIX, line, part, sign, x, y);
+    /* what the last u of a closed rope asks for the first does */
+    for (size_t i = 0, last = size_of(band) - band->width; band->closed && i < band->width; i++) {
+        y[x.every * i] += y[x.every * (last + i)];
+        y[x.every * (last + i)] = 0;
+    }
 }
 
 void rd_space_apply(const struct rd_space_band *band, size_t columns, const double _Complex *x,
@@ -145,7 +150,7 @@ static RD_VECTORS void orthonormalise(size_t n, size_t columns, double *x)
 void rd_space_iterate(const struct rd_space_band *band, size_t columns, const double *factor,
                       const int32_t *pivot, size_t times, double *x, double *form, double *work)
 {
-    const size_t size = size_of(band), rows = rd_space_rows(band->width);
+    const size_t size = size_of(band), rows = rd_space_rows(band->width, band->closed);
     assert(band->numbers == 2);
     for (size_t line = 0; line < band->lines; line++) {
         double *own = x + line * columns * size;
@@ -153,8 +158,8 @@ void rd_space_iterate(const struct rd_space_band *band, size_t columns, const do
         for (size_t i = 0; i < times; i++) {
             for (size_t c = 0; c < columns; c++)
                 part_of(band, line, 1, own + c * size, work + c * size);
-            rd_space_solve(band->width, 1, size, columns, factor + line * size * rows,
-                           pivot + line * size, work);
+            rd_space_solve(band->width, band->closed, 1, size, columns, factor + line * size * rows,
+                           pivot + line * size, work, work + columns * size);
             memcpy(own, work, columns * size * sizeof *own);
             orthonormalise(size, columns, own);
         }

@@ -29,16 +29,16 @@ static inline size_t rd_space_triple(size_t width)
     return 3 * width * width;
 }
 
-/* entries on either side of a band's diagonal */
-static inline size_t rd_space_beside(size_t width)
+/* entries on either side of a band's diagonal; a closed one is folded, 0, last, 1, last but one .. */
+static inline size_t rd_space_beside(size_t width, int closed)
 {
-    return 2 * width - 1;
+    return (closed ? 3 : 2) * width - 1;
 }
 
 /* of a band's columns as LAPACK factors them */
-static inline size_t rd_space_rows(size_t width)
+static inline size_t rd_space_rows(size_t width, int closed)
 {
-    return 3 * rd_space_beside(width) + 1;
+    return 3 * rd_space_beside(width, closed) + 1;
 }
 
 /* Joints whose inverse has larger entries are not joined: near a resonance of what is on their left. A
@@ -74,6 +74,7 @@ struct rd_space {
                                 first on the right */
     const double *mass;  /* (pieces + 1, width, width) */
     const uint8_t *held; /* (pieces + 1, width)   1: cannot move; as stiffness */
+    int closed; /* the last node is the first, on whose left the last piece is: nothing else stands there */
 };
 
 /* The parts of a piece at `lines` (lines, fields, 3, width, width) = Phi, S, q of each field, doubled
@@ -92,21 +93,23 @@ enum rd_status rd_space_triples(const struct rd_space_run *run, size_t lines,
        f_i-1 - F^T f_i + (Q + N) u_i = p_i,   u_i+1 - F u_i - G f_i = d_i,
 
    a band of size = (2 parts + 1) width, at so many lines, of entries of `numbers` doubles, 1 or 2; rows
-   and columns that are fixed are those of 1. */
+   and columns that are fixed are those of 1. Of a closed rope the last u is the first: its rows are fixed,
+   and what solves leaves it there once more. */
 struct rd_space_band {
     size_t width, lines, parts, numbers;
     const double *D, *G, *Q; /* (lines, parts, width, width) */
     const double *N;         /* (lines, parts + 1, width, width) */
     const uint8_t *fixed;    /* (lines, size) */
+    int closed;
 };
 
-/* The real parts of such bands, factored by columns (lines, size, rd_space_rows(width)) as LAPACK does;
+/* The real parts of such bands, factored by columns (lines, size, rd_space_rows(width, closed)) as LAPACK does;
    pivot (lines, size). Returns the first that is singular, or `lines`. */
 size_t rd_space_factor(const struct rd_space_band *band, double *factor, int32_t *pivot);
 
-/* x (lines, columns, size): right sides, solved in place */
-void rd_space_solve(size_t width, size_t lines, size_t size, size_t columns, const double *factor,
-                    const int32_t *pivot, double *x);
+/* x (lines, columns, size): right sides, solved in place; work (columns, size) */
+void rd_space_solve(size_t width, int closed, size_t lines, size_t size, size_t columns,
+                    const double *factor, const int32_t *pivot, double *x, double *work);
 
 /* y = A x of columns (lines, columns, size), A complex; rows that are fixed are 0, and columns count. */
 void rd_space_apply(const struct rd_space_band *band, size_t columns, const double _Complex *x,
@@ -114,7 +117,7 @@ void rd_space_apply(const struct rd_space_band *band, size_t columns, const doub
 
 /* x (lines, columns, size) <- Re(A)^-1 Im(A) x, so many times, its columns made orthonormal before and
    after each, and form (lines, 2, columns, columns) = x^T Re(A) x and x^T Im(A) x; A complex and factored,
-   work (columns, size). */
+   work (2, columns, size). */
 void rd_space_iterate(const struct rd_space_band *band, size_t columns, const double *factor,
                       const int32_t *pivot, size_t times, double *x, double *form, double *work);
 

@@ -40,7 +40,7 @@ class Kink(NamedTuple):
 class Axis:
     """The line that a rope follows in space, by arc length s from its left end.
 
-    Made by `line`, `arc`, `helix`, `catenary` or `points`. The frame of a section is
+    Made by `line`, `arc`, `ring`, `helix`, `catenary` or `points`. The frame of a section is
     right-handed: x along the tangent, z towards the centre of the curve, y = z cross x. Along
     the axis it turns by the rates (tau, kz, ky) that belong to (alpha, beta, gamma):
     x' = kz z + ky y, and tau turns it about x; here ky = 0. A joint at which it jumps is a kink.
@@ -55,6 +55,8 @@ class Axis:
         vectors of the frame.
     words : mapping
         What made it, as a file keeps it: `from_words`.
+    closed : bool
+        Whether its end is its beginning, as of a `ring`: a rope on it has no ends.
 
     Examples
     --------
@@ -76,6 +78,7 @@ class Axis:
     pieces: tuple[Piece, ...]
     begins: tuple[tuple[Vector, tuple[Vector, Vector, Vector]], ...]
     words: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    closed: bool = False
 
     @staticmethod
     def from_words(words: Mapping[str, Any]) -> Axis:
@@ -84,7 +87,7 @@ class Axis:
         Parameters
         ----------
         words : mapping
-            ``kind``, one of "line", "arc", "helix", "catenary" and "points", the arguments of what
+            ``kind``, "line", "arc", "ring", "helix", "catenary" or "points", the arguments of what
             makes it, and perhaps ``reversed``.
 
         Raises
@@ -159,6 +162,41 @@ class Axis:
         r = check.number(radius, "radius", "m", sign="positive")
         turned = check.number(angle, "angle", "rad", sign="positive")
         return _placed(UniformPiece(r * turned, 0.0, 1 / r), kind="arc", radius=r, angle=turned)
+
+    @staticmethod
+    def ring(radius: float) -> Axis:
+        """Return a whole circle, whose end is its beginning: a rope on it has no ends.
+
+        It begins along X and bends towards Z. An arc of 2 pi has two ends at one place.
+
+        Parameters
+        ----------
+        radius : float
+            [m].
+
+        Raises
+        ------
+        TypeError
+            If it is not a number.
+        SceneError
+            If it is not positive.
+
+        Examples
+        --------
+        A free ring moves in 2 pairs below 55 Hz, beside its 6 rigid motions:
+
+        >>> import math
+        >>> import ropedyn as rd
+        >>> rod = rd.Rope(
+        ...     rd.Axis.ring(1.0), 62.83, bending_stiffness=981748.0, torsional_stiffness=755190.0
+        ... )
+        >>> modes = rd.Scene(rod, planes="both").compile().modes(below=55.0)
+        >>> print(modes.frequency[6:].round(2), modes.plane[6:])
+        [51.85 51.85 53.38 53.38] ['y' 'y' 'z' 'z']
+        """
+        r = check.number(radius, "radius", "m", sign="positive")
+        whole = _placed(UniformPiece(2 * math.pi * r, 0.0, 1 / r), kind="ring", radius=r)
+        return replace(whole, closed=True)
 
     @staticmethod
     def helix(
@@ -337,11 +375,13 @@ class Axis:
 
     @property
     def kinks(self) -> tuple[Kink, ...]:
-        """Joints at which the frame jumps."""
+        """Joints at which the frame jumps, of a closed one that of its ends, at 0, too."""
         found = []
-        for k, s in enumerate(self.joints[1:-1]):
-            left = self._of(k, np.array([self.pieces[k].length]))[1][0]
-            turn = np.array(self.begins[k + 1][1]).T @ left
+        for k, s in enumerate(self.joints[:-1]):
+            if k == 0 and not self.closed:
+                continue
+            left = self._of(k - 1, np.array([self.pieces[k - 1].length]))[1][0]
+            turn = np.array(self.begins[k][1]).T @ left
             if np.abs(turn - np.eye(3)).max() > TURNED:
                 found.append(Kink(float(s), turn))
         return tuple(found)
@@ -470,7 +510,9 @@ class Axis:
             place, frame = self._of(k, np.array([piece.length]))
             back.append((piece.backward(), place[0], frame[0] * [-1.0, -1.0, 1.0]))
         return replace(
-            _axis(back), words={**self.words, "reversed": not self.words.get("reversed", False)}
+            _axis(back),
+            closed=self.closed,
+            words={**self.words, "reversed": not self.words.get("reversed", False)},
         )
 
     def _of(self, k: int, s: Real) -> tuple[Real, Real]:
@@ -491,7 +533,7 @@ class Axis:
         return found.reshape((*np.shape(s), *shape))
 
 
-KINDS = ("line", "arc", "helix", "catenary", "points")
+KINDS = ("line", "arc", "ring", "helix", "catenary", "points")
 
 
 def _axis(placed: Iterable[tuple[Piece, Real, Real]], **words: Any) -> Axis:

@@ -75,6 +75,8 @@ def _check_on_axis(scene: Described) -> None:
         if got:
             raise SceneError(f"{name} must be left out for {what}, got {got}")
     _check_parts_in_space(scene, what)
+    if axis is not None and axis.closed:
+        _check_closed(scene)
     if hangs is not None:
         _check_hanging(scene, hangs)
     elif isinstance(scene.tension, Tension) and not (scene.tension.is_constant and axis):
@@ -123,6 +125,19 @@ def _check_parts_in_space(scene: Described, what: str) -> None:
             raise SceneError(f"parts[{i}].lay_length must be given for {what}, got None")
         if isinstance(part, _part.Dashpot) and part.exponent != 1:
             raise SceneError(f"parts[{i}].exponent must be 1 for {what}, got {part.exponent!r}")
+
+
+def _check_closed(scene: Described) -> None:
+    """Refuse what a rope without ends does not have."""
+    turned, rubs = scene.rope.principal_angle, rubbing(scene.rope, scene.tension)
+    absent = {
+        "ends": check.shown(scene.ends) if scene.ends != ("clamped", "clamped") else "",
+        "friction of the tension": rubs.friction if rubs else "",
+        "principal_angle along the rope": check.shown(turned) if isinstance(turned, tuple) else "",
+    }
+    for name, got in absent.items():
+        if got:
+            raise SceneError(f"{name} must be left out on an axis that is closed, got {got}")
 
 
 def _check_rubbing(scene: Described, rubs: Tension) -> None:

@@ -48,7 +48,8 @@ def card(scene: Described) -> Card:
         told["string"] = f"waves of {speed:.4g} m/s, first frequency {speed / length / 2:.4g} Hz"
     if bending:
         told["T L^2/B"] = f"{tension * length**2 / bending:.4g}"
-    told["ends"] = " and ".join(map(_end, scene.ends))
+    closed = scene.rope.axis is not None and scene.rope.axis.closed
+    told["ends"] = "none" if closed else " and ".join(map(_end, scene.ends))
     if scene.parts:
         told["parts"] = _counted(type(part).__name__ for part in scene.parts)
     if scene.dampings:

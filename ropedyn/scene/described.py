@@ -227,7 +227,7 @@ class Described(Description):
             Gravity.kind: self.sags,
             Gravity.grading: self.is_graded or hanging(rope, self.gravity) is not None,
             SECOND_PLANE: self.planes == "both",
-            "axis": rope.axis is not None,
+            "axis": rope.axis is not None and not rope.axis.closed,
             "initial moment": rope.natural == "straight" or bool(self.torque or self.axial_force),
             "turned section": rope.is_turned,
             "shear": rope.shear_stiffness is not None,

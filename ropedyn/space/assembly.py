@@ -22,8 +22,8 @@ from ..base.errors import SolveError
 from .rope import Carried, Factors, SpaceRope, halvings, scaled_rates, size_of
 from .samples import coefficients, series_of
 
-Band = tuple[Complex, Complex, Complex, Complex, NDArray[np.uint8]]
-"""D, G, Q, N and which rows stand for nothing, shape (n, size)."""
+Band = tuple[Complex, Complex, Complex, Complex, NDArray[np.uint8], bool]
+"""D, G, Q, N, which rows stand for nothing, shape (n, size), and whether its ends are one node."""
 
 ONE = np.zeros(1, dtype=np.intp)  # All six coordinates, of what is wound.
 GENTLE = 0.9  # A joint's inverse is so far from 1; by 1 and more where a part has resonated.
@@ -51,6 +51,8 @@ class Assembly:
         What rounding may have done to N, where wires are carried.
     feet : tuple of Foot
         Of the wires.
+    closed : bool
+        Whether the last node is the first: nothing stands there.
     """
 
     D: Complex
@@ -63,6 +65,7 @@ class Assembly:
     z: Real
     doubt: Real
     feet: tuple[Foot, ...] = ()
+    closed: bool = False
     inner: Index | None = None
 
     @property
@@ -109,7 +112,8 @@ class Assembly:
         """What the core takes."""
         both = np.zeros((len(self.D), 2 * self.parts + 1, self.width), dtype=np.uint8)
         both[:, ::2], both[:, 1::2] = self.held, self.absent[:, None]
-        return self.D, self.G, self.Q, self.N, both.reshape(len(both), -1)
+        both[:, -1] |= self.closed
+        return self.D, self.G, self.Q, self.N, both.reshape(len(both), -1), self.closed
 
     def factored(self) -> Factored:
         """Return the real parts of all lines factored."""
@@ -192,7 +196,7 @@ def assemble(
     absent = np.broadcast_to(blocks.absent[which], z.shape)
     held = np.tile(absent[:, None], (1, node[-1] + 1, 1))
     held[:, node] |= blocks.held[which]
-    return Assembly(D, G, Q, N, held, absent, node, z, doubt, feet)
+    return Assembly(D, G, Q, N, held, absent, node, z, doubt, feet, rope.closed)
 
 
 class Foot(NamedTuple):

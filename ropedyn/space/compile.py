@@ -73,7 +73,8 @@ def rope_of_scene(scene: Scene, *, followed: float = FOLLOWED) -> SpaceRope:
     rope = rope_of(axis, section_of(scene), rest_of(scene), absent, followed=followed)
     drag = damping.drag(scene.dampings)
     rope.drag[:] = np.diag([drag] * 3 + [0.0] * 3)
-    for node, end in zip((0, -1), scene.ends):
+    rope = replace(rope, closed=axis.closed)
+    for node, end in zip((0, -1), () if axis.closed else scene.ends):
         stand = end_of(end)
         rope.held[node] |= [stand.holds(c) for c in SIX]
         for array, what in zip((rope.springs, rope.masses, rope.dashpots), _standing(stand)):

@@ -185,7 +185,7 @@ def rope_of(
     )
 
 
-class Block(NamedTuple):
+class FollowedBlock(NamedTuple):
     """A part of an axis that polynomials follow, by its arc length."""
 
     begin: float
@@ -196,7 +196,7 @@ class Block(NamedTuple):
 
 def _blocks(
     axis: Axis, k: int, section: SpaceSection, rest: Rest, followed: float
-) -> Iterator[Block]:
+) -> Iterator[FollowedBlock]:
     """Yield those of piece k."""
     piece, start = axis.pieces[k], float(axis.joints[k])
     corners = np.array(section.angle[0]) - start
@@ -211,7 +211,7 @@ def _blocks(
         if missed > followed and end - begin > 1e-6 * piece.length:
             left += [((begin + end) / 2, end), (begin, (begin + end) / 2)]
             continue
-        yield Block(start + begin, end - begin, given, bool(changing))
+        yield FollowedBlock(start + begin, end - begin, given, bool(changing))
 
 
 def _along(axis: Axis, k: int, s: Real, section: SpaceSection, rest: Rest) -> dict[str, Real]:

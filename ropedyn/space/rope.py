@@ -77,6 +77,8 @@ class SpaceRope:
         Coordinates that it does not have anywhere.
     carried : tuple of Carried
         Wires at nodes.
+    closed : bool
+        Whether its ends are one node, the first: nothing stands at the last.
     """
 
     length: Real
@@ -95,6 +97,7 @@ class SpaceRope:
     held: Flags
     absent: Flags
     carried: tuple[Carried, ...] = ()
+    closed: bool = False
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -114,7 +117,7 @@ class SpaceRope:
     @property
     def unknowns(self) -> int:
         """How many coordinates of nodes can move."""
-        return int((~self.held).sum())
+        return int((~self.held[: len(self.held) - self.closed]).sum())
 
     @computed
     def own(self) -> Index:
@@ -163,7 +166,12 @@ class SpaceRope:
         arrays["carried"] = tuple(c._replace(node=int(at[c.node])) for c in self.carried)
         share = self.share[piece] * (inside[1] - inside[0])
         cut = replace(self, length=np.diff(stations), share=share, **arrays)
-        return cut, np.abs(stations - np.asarray(places)[:, None]).argmin(axis=1)
+        return cut, cut.node_at(places)
+
+    def node_at(self, places: ArrayLike) -> Index:
+        """Return the nodes next to places [m]."""
+        node = np.abs(self.x - np.asarray(places)[..., None]).argmin(axis=-1)
+        return node % len(self.length) if self.closed else node
 
     def divided(self, equal: int) -> SpaceRope:
         """Return it with so many equal pieces in place of each."""
@@ -301,7 +309,7 @@ class SpaceRope:
         series = [series_of(length, int(n), samples) for length, n in zip(self.length, halved)]
         nodes = np.array([len(one) for one in series], dtype=np.int32)
         fields, *beside = self.alike
-        return (self.length, halved, nodes, fields, np.concatenate(series), *beside), z
+        return (self.length, halved, nodes, fields, np.concatenate(series), *beside, self.closed), z
 
 
 SAMPLED = ("bend", "soft", "string", "initial", "stress")

@@ -103,6 +103,8 @@ class LoadedPart(NamedTuple):
         held = np.zeros(u.shape)
         held[1:] += f
         held[:-1] += Q @ u[:-1] - f - D.swapaxes(1, 2) @ f
+        if self.system.closed:
+            held[0] += held[-1]
         force = np.where(self.system.held[0, :, :, None], held, p - N @ u)
         return np.asarray(force[self.system.node, :, 0] / self.system.z[0])
 
@@ -114,6 +116,8 @@ class LoadedPart(NamedTuple):
         unit[np.repeat(system.node, w), along, np.arange(w * nodes)] = 1.0
         moved = bound(system, self.field, _solved(system, unit))[0, 0].reshape(nodes, w)
         moved[self.held] = 0.0
+        if system.closed:
+            moved[-1] = moved[0]
         size = np.abs(system.N[0, system.node])
         pressed = (size @ moved[:, :, None])[:, :, 0]
         # p - N u itself, whose terms have a rounding each
@@ -134,6 +138,8 @@ class LoadedPart(NamedTuple):
         system = self.system
         e = np.zeros((1, system.parts + 1, system.width, len(node)))
         e[0, system.node[node], along, np.arange(len(node))] = 1.0
+        if system.closed:
+            e[0, -1] = e[0, 0]
         x = system.together(e, np.zeros((1, system.parts, *e.shape[2:])))
         x = x + system.factored().solve(-system.apply(x).real)
         return LoadedFields(*system.apart(x), 0 * e)
@@ -148,7 +154,7 @@ def _under(rope: SpaceRope, loads: dict[Point, float]) -> list[LoadedPart]:
         right = np.zeros((system.parts + 1, system.width, 1))
         for (coordinate, at), amount in loads.items():
             along = np.flatnonzero(own == SIX.index(coordinate))
-            node = system.node[int(np.abs(rope.x - at).argmin())]
+            node = system.node[int(rope.node_at(at))]
             right[node, along] += amount * system.z[0, along, None]
         if right.any():
             found.append(LoadedPart(own, system, _solved(system, right)))

@@ -201,11 +201,11 @@ static void test_parts_of_what_only_seems_to_change(void)
     }
     const struct rd_space_run plain = {SIX, 1, HALVINGS, 1, 1, flat};
     const struct rd_space_run about = {SIX, 1, HALVINGS, NODES, FIELDS, series};
-    rd_space_triples(&about, 0, rates, 3, 1e9, many, &reached, &whole, &workspace);
+    rd_space_triples(&about, 0, rates, 3, 0.9, many, &reached, &whole, &workspace);
     workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
-    CHECK_INT(rd_space_triples(&plain, 1, rates, 3, 1e9, one, &reached, &whole, &workspace), RD_OK);
+    CHECK_INT(rd_space_triples(&plain, 1, rates, 3, 0.9, one, &reached, &whole, &workspace), RD_OK);
     workspace.used = 0;
-    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1e9, many, &reached, &whole, &workspace),
+    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 0.9, many, &reached, &whole, &workspace),
               RD_OK);
     CHECK_INT(reached, 3);
     CHECK(whole);
@@ -214,12 +214,12 @@ static void test_parts_of_what_only_seems_to_change(void)
             CHECK_ABS(creal(many[part * TRIPLE + i]), creal(one[i]),
                       256 * EPS * (1e-3 + fabs(creal(one[i]))), "roundings of nodes");
     workspace.used = 0;
-    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1 + 1e-9, many, &reached, &whole, &workspace),
+    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1e-9, many, &reached, &whole, &workspace),
               RD_OK);
     CHECK(reached < 3 && !whole);
     workspace.size--;
     workspace.used = 0;
-    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1e9, many, &reached, &whole, &workspace),
+    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 0.9, many, &reached, &whole, &workspace),
               RD_NO_MEMORY);
     free(workspace.base);
 }
@@ -247,11 +247,11 @@ static void test_bands_of_numbers_of_both_kinds(void)
             G[i * w + i] = (double)(2 + i);
             x[2 * w + i] = 1;
         }
-        const struct rd_space_band real = {w, 1, 1, 1, D, G, none, none, fixed};
+        const struct rd_space_band real = {w, 1, 1, 1, D, G, none, none, fixed, 0};
         const struct rd_space_band many = {
-            w, LINES, 1, 2, (double *)cD, (double *)cG, (double *)cnone, (double *)cnone, fixed};
+            w, LINES, 1, 2, (double *)cD, (double *)cG, (double *)cnone, (double *)cnone, fixed, 0};
         CHECK_INT((long long)rd_space_factor(&real, band, pivot), 1);
-        rd_space_solve(w, 1, 3 * w, 1, band, pivot, x);
+        rd_space_solve(w, 0, 1, 3 * w, 1, band, pivot, x, NULL);
         CHECK_INT(rd_space_respond(&many, 1, cx, &workspace), RD_NO_MEMORY);
         workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
         CHECK_INT(rd_space_respond(&many, 1, cx, &workspace), RD_OK);
@@ -281,7 +281,7 @@ static void test_iteration_finds_what_gives_way_most(void)
     for (size_t w = 3; w <= SIX; w += 3) {
         double _Complex D[FULL] = {0}, G[FULL] = {0}, none[FULL] = {0}, N[2 * FULL] = {0};
         double _Complex given[3 * SIX], back[3 * SIX];
-        double factor[3 * SIX * (6 * SIX - 2)], x[COLUMNS * 3 * SIX], work[COLUMNS * 3 * SIX];
+        double factor[3 * SIX * (6 * SIX - 2)], x[COLUMNS * 3 * SIX], work[2 * COLUMNS * 3 * SIX];
         double form[2 * COLUMNS * COLUMNS];
         uint8_t fixed[3 * SIX] = {0};
         int32_t pivot[3 * SIX];
@@ -298,7 +298,7 @@ static void test_iteration_finds_what_gives_way_most(void)
             x[3 * w + i] = (double)(i % w);
         }
         const struct rd_space_band band = {
-            w, 1, 1, 2, (double *)D, (double *)G, (double *)none, (double *)N, fixed};
+            w, 1, 1, 2, (double *)D, (double *)G, (double *)none, (double *)N, fixed, 0};
         struct rd_workspace workspace = {0};
         rd_space_apply(&band, 1, given, back);
         rd_space_respond(&band, 1, back, &workspace);
@@ -323,6 +323,48 @@ static void test_iteration_finds_what_gives_way_most(void)
     }
 }
 
+/* two parts of springs between the same two nodes, one of which a spring holds */
+static void test_a_closed_band_is_two_springs_side_by_side(void)
+{
+    const double g[2] = {2, 3}, n = 0.5, p = 1;
+    for (size_t w = 3; w <= SIX; w += 3) {
+        double _Complex D[2 * FULL] = {0}, G[2 * FULL] = {0}, none[2 * FULL] = {0};
+        double _Complex N[3 * FULL] = {0}, cx[5 * SIX] = {0};
+        double x[5 * SIX] = {0}, work[5 * SIX], factor[5 * SIX * (9 * SIX - 2)];
+        uint8_t fixed[5 * SIX] = {0};
+        int32_t pivot[5 * SIX];
+        struct rd_workspace workspace = {0};
+        for (size_t i = 0; i < w; i++) {
+            G[i * w + i] = g[0];
+            G[(w + i) * w + i] = g[1];
+            N[i * w + i] = n;
+            fixed[4 * w + i] = 1;
+            cx[2 * w + i] = x[2 * w + i] = p;
+        }
+        const struct rd_space_band band = {
+            w, 1, 2, 2, (double *)D, (double *)G, (double *)none, (double *)N, fixed, 1};
+        CHECK_INT((long long)rd_space_factor(&band, factor, pivot), 1);
+        rd_space_solve(w, 1, 1, 5 * w, 1, factor, pivot, x, work);
+        CHECK_INT(rd_space_respond(&band, 1, cx, &workspace), RD_NO_MEMORY);
+        workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
+        CHECK_INT(rd_space_respond(&band, 1, cx, &workspace), RD_OK);
+        const double first = p / n, other = first + p / (1 / g[0] + 1 / g[1]);
+        for (size_t i = 0; i < w; i++) {
+            CHECK_ABS(x[i], first, 16 * EPS * other, "roundings");
+            CHECK_ABS(x[2 * w + i], other, 16 * EPS * other, "roundings");
+            CHECK(x[4 * w + i] == x[i]);
+            CHECK_ABS(cabs(cx[2 * w + i] - other), 0, 16 * EPS * other, "roundings");
+            CHECK(cx[4 * w + i] == cx[i]);
+        }
+        /* nothing holds it */
+        memset(N, 0, sizeof N);
+        workspace.used = 0;
+        CHECK_INT(rd_space_respond(&band, 1, cx, &workspace), RD_OK);
+        CHECK(!isfinite(creal(cx[0])));
+        free(workspace.base);
+    }
+}
+
 int main(void)
 {
     test_triple_of_a_beam_at_rest();
@@ -331,5 +373,6 @@ int main(void)
     test_parts_of_what_only_seems_to_change();
     test_bands_of_numbers_of_both_kinds();
     test_iteration_finds_what_gives_way_most();
+    test_a_closed_band_is_two_springs_side_by_side();
     return check_report("space");
 }

@@ -206,7 +206,7 @@ RATES, SERIES = SPACE[3][:, 0] + 0j, SPACE[4]
 BLOCKS = [np.tile(np.eye(6), (2, n, 1, 1)) for n in (1, 1, 1, 2)]
 FIXED = np.zeros((2, 18), dtype=np.uint8)
 SOLVED = np.ones((2, 3, 18))
-FACTORED = _core.space_factor(*BLOCKS, FIXED)[:2]
+FACTORED = _core.space_factor(*BLOCKS, FIXED, False)[:2]
 
 # every entry point that takes a chain
 ENTRIES = {
@@ -288,11 +288,11 @@ OTHERS = {
     ),
     "divide": lambda _: _core.divide(*DIVIDED),
     "space_triples": lambda _: _core.space_triples(RATES, SERIES, 2.0, 6, 6, 1e4),
-    "space_factor": lambda _: _core.space_factor(*BLOCKS, FIXED),
+    "space_factor": lambda _: _core.space_factor(*BLOCKS, FIXED, False),
     "space_solve": lambda _: _core.space_solve(*FACTORED, SOLVED),
-    "space_respond": lambda _: _core.space_respond(*BLOCKS, FIXED, SOLVED),
-    "space_apply": lambda _: _core.space_apply(*BLOCKS, FIXED, SOLVED),
-    "space_iterate": lambda _: _core.space_iterate(*BLOCKS, FIXED, *FACTORED, SOLVED, 2),
+    "space_respond": lambda _: _core.space_respond(*BLOCKS, FIXED, False, SOLVED),
+    "space_apply": lambda _: _core.space_apply(*BLOCKS, FIXED, False, SOLVED),
+    "space_iterate": lambda _: _core.space_iterate(*BLOCKS, FIXED, False, *FACTORED, SOLVED, 2),
     "space_count": lambda _: _core.space_count(SPACE, PLANE, np.array([1e4, 1e6]), SCALE),
 }
 
@@ -641,7 +641,7 @@ REFUSED = {
     ),
     "nodes without masses": (
         lambda: _core.space_count(
-            (*SPACE[:8], SPACE[8][:, 1:], SPACE[9]), PLANE[:1], np.ones(1), SCALE[:1]
+            (*SPACE[:8], SPACE[8][:, 1:], *SPACE[9:]), PLANE[:1], np.ones(1), SCALE[:1]
         ),
         ValueError,
         "mass must have 2 entries along axis 1, got 1",
@@ -657,7 +657,7 @@ REFUSED = {
         r"component must lie in 0 ... 1, got 2",
     ),
     "matrices of four coordinates": (
-        lambda: _core.space_factor(*(one[..., :4, :4] for one in BLOCKS), FIXED),
+        lambda: _core.space_factor(*(one[..., :4, :4] for one in BLOCKS), FIXED, False),
         ValueError,
         "D must be matrices of 3 or 6 rows, got 4",
     ),
@@ -667,42 +667,44 @@ REFUSED = {
         "factors must be those of 3 or 6 coordinates",
     ),
     "responses of fewer rows": (
-        lambda: _core.space_respond(*BLOCKS, FIXED, SOLVED[:, :, :5]),
+        lambda: _core.space_respond(*BLOCKS, FIXED, False, SOLVED[:, :, :5]),
         ValueError,
         "right must have 18 entries along axis 2, got 5",
     ),
     "vectors of fewer rows": (
-        lambda: _core.space_apply(*BLOCKS, FIXED, SOLVED[:, :, :5]),
+        lambda: _core.space_apply(*BLOCKS, FIXED, False, SOLVED[:, :, :5]),
         ValueError,
         "vectors must have 18 entries along axis 2, got 5",
     ),
     "iterated vectors of fewer rows": (
-        lambda: _core.space_iterate(*BLOCKS, FIXED, *FACTORED, SOLVED[:, :, :5], 2),
+        lambda: _core.space_iterate(*BLOCKS, FIXED, False, *FACTORED, SOLVED[:, :, :5], 2),
         ValueError,
         "vectors must have 18 entries along axis 2, got 5",
     ),
     "iterations of other factors": (
-        lambda: _core.space_iterate(*BLOCKS, FIXED, FACTORED[0][:, :5], FACTORED[1], SOLVED, 2),
+        lambda: _core.space_iterate(
+            *BLOCKS, FIXED, False, FACTORED[0][:, :5], FACTORED[1], SOLVED, 2
+        ),
         ValueError,
         "factors must have 18 entries along axis 1, got 5",
     ),
     "fewer than no iterations": (
-        lambda: _core.space_iterate(*BLOCKS, FIXED, *FACTORED, SOLVED, -1),
+        lambda: _core.space_iterate(*BLOCKS, FIXED, False, *FACTORED, SOLVED, -1),
         ValueError,
         "times must be from 0 to 60, got -1",
     ),
     "a rope of nine arrays": (
         lambda: _core.space_count(SPACE[:9], PLANE[:1], np.ones(1), SCALE[:1]),
         TypeError,
-        "10 arguments",
+        "11 arguments",
     ),
     "nodes of other parts": (
-        lambda: _core.space_factor(*BLOCKS[:3], BLOCKS[0], FIXED),
+        lambda: _core.space_factor(*BLOCKS[:3], BLOCKS[0], FIXED, False),
         ValueError,
         "N must have 2 entries along axis 1, got 1",
     ),
     "fixed rows of other parts": (
-        lambda: _core.space_factor(*BLOCKS, FIXED[:, 1:]),
+        lambda: _core.space_factor(*BLOCKS, FIXED[:, 1:], False),
         ValueError,
         "fixed must have 18 entries along axis 1, got 17",
     ),

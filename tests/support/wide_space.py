@@ -193,6 +193,7 @@ def deflection(rope: SpaceRope, loads):
         sums = np.zeros(u.shape, dtype=np.clongdouble)
         sums[:, 1:] += f
         sums[:, :-1] += Q @ u[:, :-1] - F.swapaxes(2, 3) @ f
+        sums = np.where(held[None, :, :, None], sums, p - N @ u)
         displacement[:, own] = (u[0, node, :, 0] * z[0]).real
         force[:, own] = (sums[0, node, :, 0] / z[0]).real
     return displacement, force
