@@ -22,7 +22,7 @@ from .damped.attached_energy import AttachedEnergy
 from .fewest import solve_components
 from .forms import STRAINS
 from .modes import Modes, UndampedVectors
-from .sensitivity import Shapes, clusters_of
+from .sensitivity import Sensitivity, Shapes, clusters_of
 from .spectrum import ComponentModes, merged, pieces_of
 
 UNSEEN = 1e-8
@@ -149,8 +149,8 @@ def shapes_at(modes: Modes, points: Sequence[Point]) -> Real:
     """Return the shapes of modes at points of the rope."""
     # inside elements of a chain that of the element between its nodes; continuous spans are cut
     # there, which changes nothing
-    if modes.line is not None:
-        return modes.sensitivity.shapes_at(points)
+    if not isinstance(modes.sensitivity, Sensitivity):
+        return np.asarray(modes.sensitivity.shapes_at(points))
     shapes, number = modes.sensitivity.shapes, len(modes.frequency)
     model = shapes.model
     inside = [at for _, at in points if locate(model.x, at)[1] is not None]

@@ -20,7 +20,7 @@ from ..response.moved_end import is_end
 from ..scene.force import Force, Impulse, forces
 from ..scene.tension import Tension
 from .acting import scene_laws
-from .line.transfer import Look, Transfer
+from .line.transfer import Transfer, TransferFunctions
 from .start import Begun, kicked, released
 
 EVENTS = "events"
@@ -53,7 +53,7 @@ class Run:
     progress: Callable[[float], Any] = silent  # takes the fraction that is done
     partial: bool = False  # whether what was computed until the numbers fail is an answer
     # of the model, drives and responses; other kinds of ropes have their own
-    transfer: Callable[[Any, tuple[Any, ...], tuple[Point, ...]], Look] = Transfer
+    transfer: Callable[[Any, tuple[Any, ...], tuple[Point, ...]], TransferFunctions] = Transfer
 
     @classmethod
     def of(
@@ -110,7 +110,7 @@ class Run:
         coarse = None if self.coarse is None else self.coarse.but(**fields)
         return replace(self, **({"coarse": coarse} | fields))
 
-    def look(self, drives: tuple[Any, ...], responses: tuple[Point, ...]) -> Look:
+    def look(self, drives: tuple[Any, ...], responses: tuple[Point, ...]) -> TransferFunctions:
         """Return transfer functions of the model."""
         return self.transfer(self.model, drives, responses)
 

@@ -111,7 +111,7 @@ def points_for(rope: SpaceRope, eigenvalue: Real) -> int:
     return int(min(max(least, math.ceil(16 * wave * rope.length.max() / math.pi)), most))
 
 
-class Batch(NamedTuple):
+class ShapeBatch(NamedTuple):
     """Modes whose vectors are found at once."""
 
     clusters: list[Index]  # the numbers of those that are found together
@@ -143,7 +143,7 @@ class SpaceShapes:
             yield from np.split(own, np.flatnonzero(np.diff(value) > near[1:] + near[:-1]) + 1)
 
     @computed
-    def batches(self) -> list[Batch]:
+    def batches(self) -> list[ShapeBatch]:
         """Vectors of unit mass of modes that are found together, so many clusters at a time."""
         self._refuse_still()
         every, found = list(self.clusters()), []
@@ -158,7 +158,7 @@ class SpaceShapes:
             factors = unforced(means + beside, STEP)
             system = assemble(self.rope, which, factors, z, equal=self.points)
             own = self._found(system, [len(one) for one in clusters])
-            found.append(Batch(clusters, system, own, (which, unforced(means), z)))
+            found.append(ShapeBatch(clusters, system, own, (which, unforced(means), z)))
         return found
 
     @computed

@@ -128,7 +128,7 @@ def _place(rope: SpaceRope, point: tuple[Any, ...]) -> float:
     return float(rope.x[rope.carried[int(point[1])].node] if point[0] == WIRE else point[1])
 
 
-class Ports(NamedTuple):
+class SpacePorts(NamedTuple):
     """What points see of motion and force, and its rounding: rows (n, points, width)."""
 
     node: Index  # (points,) whose motion,
@@ -256,11 +256,11 @@ class Request:
         u, force = system.apart(x)
         return LoadedFields(u + moved, force, load, slip)
 
-    def _ports(self, system: Assembly, side: AskedPart, end: int) -> Ports:
+    def _ports(self, system: Assembly, side: AskedPart, end: int) -> SpacePorts:
         """Return what points see of their nodes and of the part left of them."""
         points, node = side.point[end], system.node[side.node[end]]
         motion = np.zeros((len(system.z), len(points), system.width), dtype=np.complex128)
-        ports = Ports(
+        ports = SpacePorts(
             node,
             motion,
             np.zeros(motion.shape),
@@ -283,7 +283,7 @@ class Request:
         return ports
 
     @staticmethod
-    def _see_force(system: Assembly, ports: Ports, k: int, along: int) -> None:
+    def _see_force(system: Assembly, ports: SpacePorts, k: int, along: int) -> None:
         """See what the rope right of a node puts on the part left of it, of the first on the end.
 
         That is f_a = F^T f_b - Q u_a.

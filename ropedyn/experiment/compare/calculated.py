@@ -14,6 +14,7 @@ from ...base.errors import SceneError, SolveError
 from ...chain.port import Point
 from ...eigen.eigen import solve_modes
 from ...eigen.modes import Modes
+from ...eigen.sensitivity import Sensitivity
 from ...eigen.vectors import shapes_at
 from ...model import Model
 from ...response.frf import FRF
@@ -46,7 +47,8 @@ class CalculatedPeaks:
     @property
     def is_followed(self) -> bool:
         """Whether modes can be followed while a number changes: on an axis they are not."""
-        return self.modes is not None and self.has_shapes and self.modes.line is None
+        modes = self.modes if self.has_shapes else None
+        return modes is not None and isinstance(modes.sensitivity, Sensitivity)
 
     def checked(self, points: Any, name: str) -> tuple[Point, ...]:
         """Return points that the rope has, each a coordinate at a position."""

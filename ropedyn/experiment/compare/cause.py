@@ -46,7 +46,7 @@ def likely_cause(found: CalculatedPeaks, order: Integer, measured: Real, std: Re
     at = order[order > 0] - 1
     spread = np.hypot(std[order > 0], found.error[at])
     known = np.isfinite(spread) & (spread > 0)
-    if found.modes is None or not found.is_followed or known.sum() < FEWEST:
+    if found.modes is None or known.sum() < FEWEST or not found.is_followed:
         return ""
     at, target = at[known], measured[order > 0][known]
     wanted = np.log(target / found.frequency[at])

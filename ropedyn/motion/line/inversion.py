@@ -31,7 +31,7 @@ from ..request import Run
 from .at_once import LOOKS, at_once, response
 from .force_transform import transform
 from .grid import LEAST, Grid
-from .transfer import Look
+from .transfer import TransferFunctions
 
 PERIODS = ((1e-6, 1.25, 1e-9), (0.0, 2.0, 1e-11))
 """From this tolerance on the period is so much longer than the record, and this alias is left."""
@@ -76,7 +76,7 @@ class Line:
     """Transfer functions at the rates of a grid."""
 
     run: Run
-    transfer: Look
+    transfer: TransferFunctions
     forces: tuple[Force, ...]
     grid: Grid
     value: Complex  # (drives, responses, lines + 1)
@@ -258,7 +258,7 @@ def _moves(point: Point) -> bool:
     return not (is_end(point) or is_force(point) or is_tip(point))
 
 
-def _rounding(transfer: Look, s: Complex, value: Complex) -> Real:
+def _rounding(transfer: TransferFunctions, s: Complex, value: Complex) -> Real:
     """Bound what rounding does to values at many rates by what it does at some of them."""
     at = np.unique(np.linspace(0, len(s) - 1, ROUNDED).astype(np.intp))
     size = np.abs(value)

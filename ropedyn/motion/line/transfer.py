@@ -24,7 +24,7 @@ from ...response.solvers import SOLVERS
 from ...scene import damping
 
 
-class Look(Protocol):
+class TransferFunctions(Protocol):
     """What responses are to drives, in the rate s of a motion e^(s t)."""
 
     most: ClassVar[int]  # rates are looked at, where times resolve fewer
