@@ -42,15 +42,26 @@ class Triple(NamedTuple):
 class Rows(NamedTuple):
     """Equations between two stations, each (lines or 1, width, width).
 
-    ahead u_b + behind u_a = soft f_b and f_a = turn f_b + stiff_ahead u_b + stiff u_a.
+    ahead u_b + behind u_a = soft f_b and f_a = turn f_b + stiff u_a.
     """
 
     ahead: Array
     behind: Array
     soft: Array
     turn: Array
-    stiff_ahead: Array
     stiff: Array
+
+
+class Strut(NamedTuple):
+    """An element beside a string that pushes, which may have no triple.
+
+    With g on the right end of the element: u_b = F u_a + G g, f_b = g + K (u_b - u_a) and f_a =
+    F^T g + K (u_b - u_a).
+    """
+
+    F: Array
+    G: Array
+    K: Array
 
 
 class Foot(NamedTuple):
@@ -270,28 +281,21 @@ def beside_string(bent: Triple, string: Array) -> tuple[Triple, Array]:
     return Triple(D, X @ bent.G, turned(bent.D) @ string @ D), X
 
 
-def strut_rows(bent: Triple, string: Array) -> Rows:
-    """Return the equations of an element beside a string that pushes, which may have no triple."""
-    unit, F = identity(bent.D), identity(bent.D) + bent.D
-    pull = bent.G @ string
-    across = string - turned(F) @ string
-    return Rows(unit + pull, -(F + pull), bent.G, turned(F), across, -across)
-
-
 def rows_of(one: Triple) -> Rows:
     """Return the equations of a triple."""
     F = identity(one.D) + one.D
     unit = np.broadcast_to(identity(one.D), (1, *one.D.shape[1:]))
-    return Rows(unit, -F, one.G, turned(F), np.zeros_like(unit), -one.Q)
+    return Rows(unit, -F, one.G, turned(F), -one.Q)
 
 
-def hinge_rows(compliance: Array, z: Array, dtype: Any) -> Rows:
-    """Return the equations across a hinge, whose force is 0 where it is free."""
+def hinge_rows(f: Frame, compliance: Array) -> Rows:
+    """Return the equations across a hinge, a spring whose force is 0 where it is free."""
     w, free = len(compliance), np.isinf(compliance)
-    unit, none = np.eye(w, dtype=dtype)[None], np.zeros((1, w, w), dtype=dtype)
+    unit = np.eye(w, dtype=f.z.dtype)[None]
     closed = unit * np.where(free, 0, 1)
-    soft = np.where(free, 1, np.where(free, 0, compliance) / z**2)
-    return Rows(closed, -closed, unit * soft, unit, none, none)
+    soft = np.where(free, 0, compliance) / f.z**2 / f.factor[SPRING][:, None]
+    soft = np.where(free, 1, soft)
+    return Rows(closed, -closed, unit * soft[:, None, :], unit, 0 * unit)
 
 
 # nodes --------------------------------------------------------------------------------------------
@@ -403,13 +407,13 @@ class Station(NamedTuple):
 
     node: int  # -1 at a joint
     term: int  # -1 where nothing stands
-    right: Rows | None  # None at the end
+    right: Rows | Strut | None  # None at the end
 
 
 def stations_of(elements: Frame, frame: Frame, patient: bool, asked: Array) -> Iterator[Station]:
     """Yield the stations, from left to right; elements may be the same at all lines."""
     chain = frame.chain
-    made: dict[int, tuple[Triple, int] | Rows] = {}
+    made: dict[int, tuple[Triple, int] | Strut] = {}
     for k in range(len(chain.first) - 1):
         e, term = int(chain.element[k]), int(chain.term[k])
         if e not in made:
@@ -420,7 +424,7 @@ def stations_of(elements: Frame, frame: Frame, patient: bool, asked: Array) -> I
     yield Station(chain.nodes - 1, int(chain.term[-1]), None)
 
 
-def element_of(f: Frame, e: int, patient: bool) -> tuple[Triple, int] | Rows:
+def element_of(f: Frame, e: int, patient: bool) -> tuple[Triple, int] | Strut:
     """Return a piece of an element and how many it has, or the equations of one that has none."""
     if f.chain.kind in (TENSED, CONTINUOUS) or not f.bent:
         return pieces_of(f, e, patient)
@@ -428,19 +432,19 @@ def element_of(f: Frame, e: int, patient: bool) -> tuple[Triple, int] | Rows:
     if not (string != 0).any():
         return bent, 1
     whole, X = beside_string(bent, string)
-    return (whole, 1) if is_calm(X) else strut_rows(bent, string)
+    return (whole, 1) if is_calm(X) else Strut(identity(bent.D) + bent.D, bent.G, string)
 
 
 def stretch(
-    f: Frame, piece: tuple[Triple, int] | Rows, term: int, nodes: list[int], patient: bool
+    f: Frame, piece: tuple[Triple, int] | Strut, term: int, nodes: list[int], patient: bool
 ) -> Iterator[Station]:
     """Yield the stations of equal elements between nodes with the same term."""
     hinge = None if f.chain.hinge is None else f.chain.hinge[term]
     opens = hinge is not None and bool((hinge > 0).any())
     foot = f.chain.attached_term is not None and bool((f.chain.attached_term == term).any())
-    alone = opens or foot or isinstance(piece, Rows) or piece[1] > 1
+    alone = opens or foot or isinstance(piece, Strut) or piece[1] > 1
     alone |= bool(f.chain.held[term].any())
-    powers = None if alone or isinstance(piece, Rows) else [piece[0]]
+    powers = None if alone or isinstance(piece, Strut) else [piece[0]]
     N = node_term(f, term)
     for begin, end in pairwise(nodes):
         if powers is None:
@@ -460,13 +464,13 @@ def stretch(
 
 
 def single(
-    f: Frame, piece: tuple[Triple, int] | Rows, node: int, term: int, hinge: Array | None
+    f: Frame, piece: tuple[Triple, int] | Strut, node: int, term: int, hinge: Array | None
 ) -> Iterator[Station]:
     """Yield the stations of a node and the element on its right."""
     if hinge is not None:
-        yield Station(node, term, hinge_rows(hinge, f.z, f.z.dtype))
+        yield Station(node, term, hinge_rows(f, hinge))
         node, term = -1, -1
-    if isinstance(piece, Rows):
+    if isinstance(piece, Strut):
         yield Station(node, term, piece)
         return
     rows = rows_of(piece[0])
@@ -558,15 +562,17 @@ class Elimination:
         for station in self.stations:
             N, foot = self.node(station.term) if station.term >= 0 else (None, None)
             a = 0 if foot is None else foot.gap.shape[1]
-            own, more = 3 * w + a, 2 * w
-            rows = own + w if station.right else 2 * w + a
+            beside = w if isinstance(station.right, Strut) else 0
+            own, more, rows = 3 * w + a + beside, 2 * w, 4 * w + a + beside
             if station.right is None:
-                own, more = 2 * w + a, 0
+                own, more, rows = 2 * w + a, 0, 2 * w + a
             A = np.zeros((lines, rows, own + more + d), dtype=self.dtype)
             A[:, :w, : 2 * w], A[:, :w, own + more :] = carried[..., : 2 * w], carried[..., 2 * w :]
             self._balance(A, station, N, foot, own + more)
-            if station.right:
+            if isinstance(station.right, Rows):
                 self._cross(A, station.right, own)
+            elif station.right:
+                self._cross_strut(A, station.right, own)
             _core.eliminate(A, own)
             kept.append((A, own, a))
             carried = A[:, own:, own:]
@@ -600,10 +606,7 @@ class Elimination:
     def _cross(self, A: Array, rows: Rows, own: int) -> None:
         """Fill in the equations of what is right of a node."""
         w, first = self.w, A.shape[1] - 2 * self.w
-        over, product = (
-            self.r[:, None, :] / self.r[:, :, None],
-            self.r[:, :, None] * self.r[:, None],
-        )
+        over, product = self._ratios()
         one, two = slice(first, first + w), slice(first + w, first + 2 * w)
         f_next, u_next = slice(own, own + w), slice(own + w, own + 2 * w)
         u, right = slice(w, 2 * w), slice(own - w, own)
@@ -612,8 +615,29 @@ class Elimination:
         A[:, one, f_next] = -rows.soft / product
         A[:, two, right] = identity(A)[:w, :w]
         A[:, two, f_next] = -rows.turn / over
-        A[:, two, u_next] = -rows.stiff_ahead * product
         A[:, two, u] = -rows.stiff * product
+
+    def _cross_strut(self, A: Array, strut: Strut, own: int) -> None:
+        """Fill in the equations of a strut, whose g is the last of the unknowns here."""
+        w, first = self.w, A.shape[1] - 3 * self.w
+        over, product = self._ratios()
+        one, two, three = (slice(first + k * w, first + (k + 1) * w) for k in range(3))
+        f_next, u_next = slice(own, own + w), slice(own + w, own + 2 * w)
+        u, right, g = slice(w, 2 * w), slice(own - 2 * w, own - w), slice(own - w, own)
+        unit, pull = identity(A)[:w, :w], strut.K * product
+        A[:, one, u_next] = unit
+        A[:, one, u] = -strut.F * over
+        A[:, one, g] = -strut.G / product
+        A[:, two, f_next] = A[:, three, right] = unit
+        A[:, two, g] = -unit
+        A[:, three, g] = -turned(strut.F) / over
+        A[:, two, u_next] = A[:, three, u_next] = -pull
+        A[:, two, u] = A[:, three, u] = pull
+
+    def _ratios(self) -> tuple[Array, Array]:
+        """Return r_j/r_i and r_i r_j, (lines, width, width)."""
+        r = self.r
+        return r[:, None, :] / r[:, :, None], r[:, :, None] * r[:, None, :]
 
     def _back(self, kept: list[tuple[Array, int, int]]) -> list[tuple[Array, Array, Array]]:
         w, d = self.w, self.d
@@ -625,7 +649,8 @@ class Elimination:
                 x -= A[:, :own, own : own + 2 * w] @ ahead
             _core.substitute(A, x)
             ahead = x[:, : 2 * w]
-            last = x[:, 2 * w + a :] if own > 2 * w + a else np.zeros_like(x[:, :w])
+            end = slice(2 * w + a, 3 * w + a)
+            last = x[:, end] if own > 2 * w + a else np.zeros_like(x[:, :w])
             found.append((x[:, :w], x[:, w : 2 * w], last))
         return found[::-1]
 

@@ -7,7 +7,8 @@ H^-1 is linear there, and its zeros are the eigenvalues.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,6 +42,9 @@ class Asked(NamedTuple):
     factors: Callable[[Array], Array]  # of (n,) values, in wide numbers, (5, n)
 
 
+Motion = Callable[[Array], Array | None]  # H at some values.
+
+
 def measured(model: Compiled, component: tuple[str, ...], asked: Asked) -> Real:
     """Return how far eigenvalues are from those in wider numbers, NaN where these do not tell."""
     found = np.full(len(asked.value), np.nan)
@@ -62,8 +66,9 @@ def measured(model: Compiled, component: tuple[str, ...], asked: Asked) -> Real:
     roots = []
     for seed in (None, *SEEDS):
         own = chain if seed is None else wide.moved(chain, seed)
-        factors = _moved(asked.factors, seed)
-        one = _roots(own, narrow(chain), asked.value, beside, groups, factors)
+        factors, loads = _moved(asked.factors, seed), _loads(chain, MOST + 1)
+        motion = partial(_motion, own, narrow(chain), factors, loads)
+        one = _roots(motion, asked.value, beside, groups)
         if one is None:
             return found
         roots.append(one)
@@ -106,24 +111,16 @@ def _moved(factors: Callable[[Array], Array], seed: int | None) -> Callable[[Arr
     return lambda value: factors(value) * off
 
 
-def _roots(
-    chain: Chain,
-    plain: Chain,
-    value: Array,
-    beside: Real,
-    groups: Iterable[Index],
-    factors: Callable[[Array], Array],
-) -> Array | None:
+def _roots(motion: Motion, value: Array, beside: Real, groups: list[Index]) -> Array | None:
     """Return eigenvalues less what they were said to be, NaN elsewhere."""
-    groups, is_real = list(groups), not np.iscomplexobj(value)
+    is_real = not np.iscomplexobj(value)
     wide = value.astype(Number if is_real else np.result_type(Number, np.complex64))
     found = np.full(len(value), np.nan, dtype=wide.dtype)
-    loads = _loads(chain, MOST + 1)
     # all of a group at once, then each alone, and nearer
     centre = np.array([wide[g].mean() for g in groups])
     spread = [np.abs(value[g] - value[g[0]]).max() for g in groups]
     step = np.array([max(beside[g].max(), 4 * s) for g, s in zip(groups, spread)])
-    pairs = _between(chain, plain, factors, centre, step, loads)
+    pairs = _between(motion, centre, step)
     if pairs is None:
         return None
     for k, group in enumerate(groups):
@@ -135,7 +132,7 @@ def _roots(
     if not np.isfinite(centre).all():
         return None
     step = NEARER * np.abs(centre).astype(float)
-    pairs = _between(chain, plain, factors, centre, step, loads)
+    pairs = _between(motion, centre, step)
     if pairs is None:
         return None
     told = np.full_like(found, np.nan)
@@ -147,16 +144,9 @@ def _roots(
     return told
 
 
-def _between(
-    chain: Chain,
-    plain: Chain,
-    factors: Callable[[Array], Array],
-    centre: Array,
-    step: Real,
-    loads: Loads,
-) -> list[tuple[Array, Array]] | None:
+def _between(motion: Motion, centre: Array, step: Real) -> list[tuple[Array, Array]] | None:
     """Return H a step below and a step above some values."""
-    H = _motion(chain, plain, factors(np.concatenate([centre - step, centre + step])), loads)
+    H = motion(np.concatenate([centre - step, centre + step]))
     if H is None:
         return None
     return list(zip(H[: len(centre)], H[len(centre) :]))
@@ -194,8 +184,11 @@ def _loads(chain: Chain, count: int) -> Loads:
     return Loads(node, row.astype(Number))
 
 
-def _motion(chain: Chain, plain: Chain, factor: Array, loads: Loads) -> Array | None:
+def _motion(
+    chain: Chain, plain: Chain, factors: Callable[[Array], Array], loads: Loads, value: Array
+) -> Array | None:
     """Return what loads move at themselves, (lines, loads, loads)."""
+    factor = factors(value)
     scales = _core.scales(plain, np.ascontiguousarray(factor.astype(np.complex128)))
     z = 2.0 ** np.round(np.log2(scales)).astype(Number)
     # forces in the units of the middle line, in which all coordinates count alike
