@@ -28,6 +28,9 @@ EPS = float(np.finfo(float).eps)
 BESIDE = 2.0**-34  # So far beside an eigenvalue H is looked at, of its size,
 WIDER = 64.0  # or so many times as far as it may be wrong.
 NEARER = 2.0**-44  # The second time, of their size.
+SETTLED = (
+    0.25  # Both times say the same but for this part of how near it is looked the second time.
+)
 APART = 256.0  # Eigenvalues nearer than so many times that are found together,
 MOST = 4  # as many as these.
 FRACTIONS = (0.2361, 0.5698, 0.8541)  # Where elements are cut to be pushed within.
@@ -68,7 +71,8 @@ def measured(model: Compiled, component: tuple[str, ...], asked: Asked) -> Real:
         own = chain if seed is None else wide.moved(chain, seed)
         factors, loads = _moved(asked.factors, seed), _loads(chain, MOST + 1)
         motion = partial(_motion, own, narrow(chain), factors, loads)
-        one = _roots(motion, asked.value, beside, groups)
+        with np.errstate(all="ignore"):
+            one = _roots(motion, asked.value, beside, groups)
         if one is None:
             return found
         roots.append(one)
@@ -76,8 +80,9 @@ def measured(model: Compiled, component: tuple[str, ...], asked: Asked) -> Real:
     noise = np.max([np.abs(other[at] - roots[0][at]) for other in roots[1:]], axis=0)
     off = np.abs(roots[0][at])
     error = ((1 + SPARE) * off + SURE * noise).astype(float) + EPS / 2 * size[at]
-    # what is not near is another root, or none
-    told = (SURE * noise < size[at] / APART) & (off <= 2 * beside[at])
+    # what is not near is another root, and what wide numbers do not know is better bounded
+    with np.errstate(invalid="ignore"):
+        told = (SURE * noise < np.maximum(asked.error[at], EPS * size[at])) & (off <= beside[at])
     found[at] = np.where(told, error, np.nan)
     return found
 
@@ -128,9 +133,8 @@ def _roots(motion: Motion, value: Array, beside: Real, groups: list[Index]) -> A
         zeros = zeros[np.argsort(zeros.real, kind="stable")] * step[k] + centre[k]
         found[group[np.argsort(wide[group].real, kind="stable")]] = zeros.real if is_real else zeros
     at, own = np.concatenate(groups), [group for group in groups for _ in group]
-    centre = found[at]
-    if not np.isfinite(centre).all():
-        return None
+    lost = ~np.isfinite(found[at])
+    centre = np.where(lost, wide[at], found[at])
     step = NEARER * np.abs(centre).astype(float)
     pairs = _between(motion, centre, step)
     if pairs is None:
@@ -138,9 +142,12 @@ def _roots(motion: Motion, value: Array, beside: Real, groups: list[Index]) -> A
     told = np.full_like(found, np.nan)
     for k, m in enumerate(at):
         near = np.abs(found[own[k]] - centre[k]) < APART * step[k]
-        zeros = _zeros(*pairs[k], int(near.sum()))
-        nearest = zeros[np.abs(zeros).argmin()] * step[k]
-        told[m] = centre[k] - wide[m] + (nearest.real if is_real else nearest)
+        zeros = _zeros(*pairs[k], max(1, int(near.sum())))
+        nearest = zeros[np.abs(zeros).argmin()]
+        # else two that are one, as at critical damping, or one that was not asked for is near
+        if np.abs(nearest) <= SETTLED and not lost[k]:
+            nearest = (nearest.real if is_real else nearest) * step[k]
+            told[m] = centre[k] - wide[m] + nearest
     return told
 
 
