@@ -1,7 +1,7 @@
 /* Linear systems of many lines in wide numbers. */
 #include "glue/glue.h"
 
-#include "wide/gauss.h"
+#include "mixed/gauss.h"
 
 /* 0, or -1 and an exception: a writable contiguous array of wide numbers with three axes */
 static int check_wide(PyObject *object, const char *name)

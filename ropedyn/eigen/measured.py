@@ -19,7 +19,8 @@ from ..chain.chain import Chain
 from ..chain.compiled import EXACT, Compiled
 from ..chain.port import cut, stops
 from ..chain.wide import FINE, SEEDS, SPARE, SURE, Number, as_real, moved, narrow, wide_of
-from ..chain.witness import Loads, inverse, respond
+from ..chain.wide_parts import inverse
+from ..chain.witness import Loads, respond
 from .spectrum import error_in_hertz
 
 Array = Any
@@ -37,7 +38,7 @@ FRACTIONS = (0.2361, 0.5698, 0.8541)  # Where elements are cut to be pushed with
 PUSHED = 3  # Nodes within a run of equal elements that are pushed.
 
 
-class Asked(NamedTuple):
+class Sought(NamedTuple):
     """Eigenvalues of one component, and what they are to be found with."""
 
     value: Array  # (k,) lambda, or s of damped motion
@@ -48,7 +49,7 @@ class Asked(NamedTuple):
 Motion = Callable[[Array], Array | None]  # H at some values.
 
 
-def measured(model: Compiled, component: tuple[str, ...], asked: Asked) -> Real:
+def measured(model: Compiled, component: tuple[str, ...], asked: Sought) -> Real:
     """Return how far eigenvalues are from those in wider numbers, NaN where these do not tell."""
     found = np.full(len(asked.value), np.nan)
     wide = wide_of(model) if len(found) else None
@@ -219,7 +220,7 @@ def rounding_of(model: Compiled, which: Index, eigenvalue: Real, bound: Real) ->
     error = bound.copy()
     for k, component in enumerate(model.components):
         mine = which == k
-        told = measured(model, component, Asked(eigenvalue[mine], bound[mine], undamped_factors))
+        told = measured(model, component, Sought(eigenvalue[mine], bound[mine], undamped_factors))
         error[mine] = np.where(np.isnan(told), bound[mine], told)
     error = error_in_hertz(eigenvalue, error)
     error.setflags(write=False)

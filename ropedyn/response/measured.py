@@ -26,7 +26,7 @@ from ..chain.wide import (
     narrow,
     wide_of,
 )
-from ..chain.witness import Fields, Loads, respond
+from ..chain.witness import Loads, NodeFields, respond
 from ..scene import damping
 from .moved_end import released
 from .question import Question
@@ -37,14 +37,14 @@ Array = NDArray[Any]
 EPS = float(np.finfo(float).eps)
 
 
-class Measured(NamedTuple):
+class RoundingFound(NamedTuple):
     """How far a response is from its value in wider numbers, (drives, responses, f)."""
 
     error: Real
     noise: Real  # what of it is the error of wider numbers
 
 
-def measured(question: Question, value: Complex) -> Measured | None:
+def measured(question: Question, value: Complex) -> RoundingFound | None:
     """Measure what rounding did to a response; None where there are no wider numbers."""
     drives = question.drives
     ends = [k for k, point in enumerate(drives) if is_end(point)]
@@ -63,7 +63,7 @@ def measured(question: Question, value: Complex) -> Measured | None:
         if which[0] in ends:
             still = [k for k, point in enumerate(question.responses) if point == part.drives[0]]
             error[which[0], still] = noise[which[0], still] = 0.0
-    return Measured(error, noise)
+    return RoundingFound(error, noise)
 
 
 def _apart(value: Complex, found: list[Array], is_ratio: bool) -> tuple[Real, Real]:
@@ -135,7 +135,7 @@ def _stands(chain: Chain, x: Real, component: tuple[str, ...], point: Point) -> 
     return not is_force(point) and is_held(chain, x, component, point)
 
 
-def _read(question: Question, x: Array, found: Fields, told: Ports) -> Array:
+def _read(question: Question, x: Array, found: NodeFields, told: Ports) -> Array:
     """Return motion and forces, (drives, responses, f)."""
     at = {int(node): k for k, node in enumerate(found.node)}
     lines = []

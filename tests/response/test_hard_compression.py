@@ -109,7 +109,7 @@ def test_element_next_to_its_own_critical_load_keeps_its_digits(
     for f in (0.0, 1.0, 50.0, 500.0):
         for response in (("z", node), other):
             # two critical loads at once, an element's and the chain's, leave 40 digits four
-            digits = DIGITS if n <= 3 else 40
+            digits = DIGITS if n <= 4 else 40
             error, covered = error_over_condition(model, f, ("z", node), response, digits=digits)
             assert covered <= 1, "rounding_error is no bound"
             worst = max(worst, error)
