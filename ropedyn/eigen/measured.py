@@ -38,7 +38,7 @@ FRACTIONS = (0.2361, 0.5698, 0.8541)  # Where elements are cut to be pushed with
 PUSHED = 3  # Nodes within a run of equal elements that are pushed.
 
 
-class Sought(NamedTuple):
+class SoughtRoots(NamedTuple):
     """Eigenvalues of one component, and what they are to be found with."""
 
     value: Array  # (k,) lambda, or s of damped motion
@@ -49,7 +49,7 @@ class Sought(NamedTuple):
 Motion = Callable[[Array], Array | None]  # H at some values.
 
 
-def measured(model: Compiled, component: tuple[str, ...], asked: Sought) -> Real:
+def measured(model: Compiled, component: tuple[str, ...], asked: SoughtRoots) -> Real:
     """Return how far eigenvalues are from those in wider numbers, NaN where these do not tell."""
     found = np.full(len(asked.value), np.nan)
     wide = wide_of(model) if len(found) else None
@@ -220,7 +220,9 @@ def rounding_of(model: Compiled, which: Index, eigenvalue: Real, bound: Real) ->
     error = bound.copy()
     for k, component in enumerate(model.components):
         mine = which == k
-        told = measured(model, component, Sought(eigenvalue[mine], bound[mine], undamped_factors))
+        told = measured(
+            model, component, SoughtRoots(eigenvalue[mine], bound[mine], undamped_factors)
+        )
         error[mine] = np.where(np.isnan(told), bound[mine], told)
     error = error_in_hertz(eigenvalue, error)
     error.setflags(write=False)
