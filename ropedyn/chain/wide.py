@@ -31,7 +31,7 @@ from .compile import (
     terms_of,
 )
 from .compiled import Compiled
-from .witness import tip_of_wire
+from .wide_parts import tip_of_wire
 
 Array = Any  # Of numbers that are wider than a chain's are declared to be.
 Number = np.longdouble

@@ -7,7 +7,8 @@ H^-1 is linear there, and its zeros are the eigenvalues.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +19,8 @@ from ..chain.chain import Chain
 from ..chain.compiled import EXACT, Compiled
 from ..chain.port import cut, stops
 from ..chain.wide import FINE, SEEDS, SPARE, SURE, Number, as_real, moved, narrow, wide_of
-from ..chain.witness import Loads, inverse, respond
+from ..chain.wide_parts import inverse
+from ..chain.witness import Loads, respond
 from .spectrum import error_in_hertz
 
 Array = Any
@@ -27,13 +29,16 @@ EPS = float(np.finfo(float).eps)
 BESIDE = 2.0**-34  # So far beside an eigenvalue H is looked at, of its size,
 WIDER = 64.0  # or so many times as far as it may be wrong.
 NEARER = 2.0**-44  # The second time, of their size.
+SETTLED = (
+    0.25  # Both times say the same but for this part of how near it is looked the second time.
+)
 APART = 256.0  # Eigenvalues nearer than so many times that are found together,
 MOST = 4  # as many as these.
 FRACTIONS = (0.2361, 0.5698, 0.8541)  # Where elements are cut to be pushed within.
 PUSHED = 3  # Nodes within a run of equal elements that are pushed.
 
 
-class Asked(NamedTuple):
+class SoughtRoots(NamedTuple):
     """Eigenvalues of one component, and what they are to be found with."""
 
     value: Array  # (k,) lambda, or s of damped motion
@@ -41,7 +46,10 @@ class Asked(NamedTuple):
     factors: Callable[[Array], Array]  # of (n,) values, in wide numbers, (5, n)
 
 
-def measured(model: Compiled, component: tuple[str, ...], asked: Asked) -> Real:
+Motion = Callable[[Array], Array | None]  # H at some values.
+
+
+def measured(model: Compiled, component: tuple[str, ...], asked: SoughtRoots) -> Real:
     """Return how far eigenvalues are from those in wider numbers, NaN where these do not tell."""
     found = np.full(len(asked.value), np.nan)
     wide = wide_of(model) if len(found) else None
@@ -62,8 +70,10 @@ def measured(model: Compiled, component: tuple[str, ...], asked: Asked) -> Real:
     roots = []
     for seed in (None, *SEEDS):
         own = chain if seed is None else wide.moved(chain, seed)
-        factors = _moved(asked.factors, seed)
-        one = _roots(own, narrow(chain), asked.value, beside, groups, factors)
+        factors, loads = _moved(asked.factors, seed), _loads(chain, MOST + 1)
+        motion = partial(_motion, own, narrow(chain), factors, loads)
+        with np.errstate(all="ignore"):
+            one = _roots(motion, asked.value, beside, groups)
         if one is None:
             return found
         roots.append(one)
@@ -71,8 +81,9 @@ def measured(model: Compiled, component: tuple[str, ...], asked: Asked) -> Real:
     noise = np.max([np.abs(other[at] - roots[0][at]) for other in roots[1:]], axis=0)
     off = np.abs(roots[0][at])
     error = ((1 + SPARE) * off + SURE * noise).astype(float) + EPS / 2 * size[at]
-    # what is not near is another root, or none
-    told = (SURE * noise < size[at] / APART) & (off <= 2 * beside[at])
+    # what is not near is another root, and what wide numbers do not know is better bounded
+    with np.errstate(invalid="ignore"):
+        told = (SURE * noise < np.maximum(asked.error[at], EPS * size[at])) & (off <= beside[at])
     found[at] = np.where(told, error, np.nan)
     return found
 
@@ -106,24 +117,16 @@ def _moved(factors: Callable[[Array], Array], seed: int | None) -> Callable[[Arr
     return lambda value: factors(value) * off
 
 
-def _roots(
-    chain: Chain,
-    plain: Chain,
-    value: Array,
-    beside: Real,
-    groups: Iterable[Index],
-    factors: Callable[[Array], Array],
-) -> Array | None:
+def _roots(motion: Motion, value: Array, beside: Real, groups: list[Index]) -> Array | None:
     """Return eigenvalues less what they were said to be, NaN elsewhere."""
-    groups, is_real = list(groups), not np.iscomplexobj(value)
+    is_real = not np.iscomplexobj(value)
     wide = value.astype(Number if is_real else np.result_type(Number, np.complex64))
     found = np.full(len(value), np.nan, dtype=wide.dtype)
-    loads = _loads(chain, MOST + 1)
     # all of a group at once, then each alone, and nearer
     centre = np.array([wide[g].mean() for g in groups])
     spread = [np.abs(value[g] - value[g[0]]).max() for g in groups]
     step = np.array([max(beside[g].max(), 4 * s) for g, s in zip(groups, spread)])
-    pairs = _between(chain, plain, factors, centre, step, loads)
+    pairs = _between(motion, centre, step)
     if pairs is None:
         return None
     for k, group in enumerate(groups):
@@ -131,32 +134,27 @@ def _roots(
         zeros = zeros[np.argsort(zeros.real, kind="stable")] * step[k] + centre[k]
         found[group[np.argsort(wide[group].real, kind="stable")]] = zeros.real if is_real else zeros
     at, own = np.concatenate(groups), [group for group in groups for _ in group]
-    centre = found[at]
-    if not np.isfinite(centre).all():
-        return None
+    lost = ~np.isfinite(found[at])
+    centre = np.where(lost, wide[at], found[at])
     step = NEARER * np.abs(centre).astype(float)
-    pairs = _between(chain, plain, factors, centre, step, loads)
+    pairs = _between(motion, centre, step)
     if pairs is None:
         return None
     told = np.full_like(found, np.nan)
     for k, m in enumerate(at):
         near = np.abs(found[own[k]] - centre[k]) < APART * step[k]
-        zeros = _zeros(*pairs[k], int(near.sum()))
-        nearest = zeros[np.abs(zeros).argmin()] * step[k]
-        told[m] = centre[k] - wide[m] + (nearest.real if is_real else nearest)
+        zeros = _zeros(*pairs[k], max(1, int(near.sum())))
+        nearest = zeros[np.abs(zeros).argmin()]
+        # else two that are one, as at critical damping, or one that was not asked for is near
+        if np.abs(nearest) <= SETTLED and not lost[k]:
+            nearest = (nearest.real if is_real else nearest) * step[k]
+            told[m] = centre[k] - wide[m] + nearest
     return told
 
 
-def _between(
-    chain: Chain,
-    plain: Chain,
-    factors: Callable[[Array], Array],
-    centre: Array,
-    step: Real,
-    loads: Loads,
-) -> list[tuple[Array, Array]] | None:
+def _between(motion: Motion, centre: Array, step: Real) -> list[tuple[Array, Array]] | None:
     """Return H a step below and a step above some values."""
-    H = _motion(chain, plain, factors(np.concatenate([centre - step, centre + step])), loads)
+    H = motion(np.concatenate([centre - step, centre + step]))
     if H is None:
         return None
     return list(zip(H[: len(centre)], H[len(centre) :]))
@@ -194,8 +192,11 @@ def _loads(chain: Chain, count: int) -> Loads:
     return Loads(node, row.astype(Number))
 
 
-def _motion(chain: Chain, plain: Chain, factor: Array, loads: Loads) -> Array | None:
+def _motion(
+    chain: Chain, plain: Chain, factors: Callable[[Array], Array], loads: Loads, value: Array
+) -> Array | None:
     """Return what loads move at themselves, (lines, loads, loads)."""
+    factor = factors(value)
     scales = _core.scales(plain, np.ascontiguousarray(factor.astype(np.complex128)))
     z = 2.0 ** np.round(np.log2(scales)).astype(Number)
     # forces in the units of the middle line, in which all coordinates count alike
@@ -219,7 +220,9 @@ def rounding_of(model: Compiled, which: Index, eigenvalue: Real, bound: Real) ->
     error = bound.copy()
     for k, component in enumerate(model.components):
         mine = which == k
-        told = measured(model, component, Asked(eigenvalue[mine], bound[mine], undamped_factors))
+        told = measured(
+            model, component, SoughtRoots(eigenvalue[mine], bound[mine], undamped_factors)
+        )
         error[mine] = np.where(np.isnan(told), bound[mine], told)
     error = error_in_hertz(eigenvalue, error)
     error.setflags(write=False)

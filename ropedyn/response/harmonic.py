@@ -125,12 +125,13 @@ class Receptance(NamedTuple):
             question, found = answered.question, None
             if answered.parts is None:
                 found = measured(question, self.value[block])
+            limit = bound()
             if found is None:
-                error[block], certain[block] = bound(), False
+                error[block], certain[block] = limit, False
                 continue
-            error[block], certain[block] = found.error, found.certain
-            if not found.certain.all():
-                error[block] = np.where(found.certain, found.error, bound())
+            # on a resonance that takes no part wider numbers know less than the bound does
+            certain[block] = told = np.isfinite(found.error) & (found.noise <= limit)
+            error[block] = np.where(told, found.error, limit)
         return error, certain
 
 

@@ -9,13 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..base.array import Complex, Flags, Real
+from ..base.array import Complex, Real
 from ..base.check import is_end
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT
 from ..chain.port import Point, Ports, cut, is_force, is_held, locate, moving, ports, stops
-from ..chain.wide import FINE, SEEDS, SPARE, SURE, Number, as_real, factors_of, moved, narrow, wide_of
-from ..chain.witness import Fields, Loads, respond
+from ..chain.wide import (
+    FINE,
+    SEEDS,
+    SPARE,
+    SURE,
+    Number,
+    as_real,
+    factors_of,
+    moved,
+    narrow,
+    wide_of,
+)
+from ..chain.witness import Loads, NodeFields, respond
 from ..scene import damping
 from .moved_end import released
 from .question import Question
@@ -26,19 +37,19 @@ Array = NDArray[Any]
 EPS = float(np.finfo(float).eps)
 
 
-class Measured(NamedTuple):
+class RoundingFound(NamedTuple):
     """How far a response is from its value in wider numbers, (drives, responses, f)."""
 
     error: Real
-    certain: Flags  # False where wider numbers do not tell either
+    noise: Real  # what of it is the error of wider numbers
 
 
-def measured(question: Question, value: Complex) -> Measured | None:
+def measured(question: Question, value: Complex) -> RoundingFound | None:
     """Measure what rounding did to a response; None where there are no wider numbers."""
     drives = question.drives
     ends = [k for k, point in enumerate(drives) if is_end(point)]
     forces = [k for k in range(len(drives)) if k not in ends]
-    error, certain = np.zeros(value.shape), np.ones(value.shape, dtype=np.bool_)
+    error, noise = np.zeros(value.shape), np.zeros(value.shape)
     parts = [(forces, replace(question, drives=[drives[k] for k in forces]))] if forces else []
     for k in ends:
         model, own = released(question.model, drives[k])
@@ -48,24 +59,23 @@ def measured(question: Question, value: Complex) -> Measured | None:
         found = _answers(part)
         if found is None:
             return None
-        error[which], certain[which] = _apart(value[which], found, which[0] in ends)
+        error[which], noise[which] = _apart(value[which], found, which[0] in ends)
         if which[0] in ends:
             still = [k for k, point in enumerate(question.responses) if point == part.drives[0]]
-            error[which[0], still] = 0.0
-    return Measured(error, certain)
+            error[which[0], still] = noise[which[0], still] = 0.0
+    return RoundingFound(error, noise)
 
 
-def _apart(value: Complex, found: list[Array], is_ratio: bool) -> tuple[Real, Flags]:
-    """Return the error of a response, and whether the first of its wide answers has digits."""
+def _apart(value: Complex, found: list[Array], is_ratio: bool) -> tuple[Real, Real]:
+    """Return the error of a response, and what of it is the error of the wide answers."""
     with np.errstate(all="ignore"):
         if is_ratio:
             found = [one[:, 1:] / one[:, :1] for one in found]
         once = found[0]
-        noise = np.max([np.abs(other - once) for other in found[1:]], axis=0)
-        error = (1 + SPARE) * np.abs(value - once) + SURE * noise + EPS / 2 * np.abs(value)
-        certain = SURE * noise < np.abs(once)
-    certain |= (error == 0) | (noise == 0)
-    return error.astype(float), certain & np.isfinite(error)
+        noise = SURE * np.max([np.abs(other - once) for other in found[1:]], axis=0)
+        error = (1 + SPARE) * np.abs(value - once) + noise + EPS / 2 * np.abs(value)
+        error = np.where(np.isfinite(error), error, np.inf)
+    return error.astype(float), np.where(np.isfinite(noise), noise, np.inf).astype(float)
 
 
 def _answers(question: Question) -> list[Array] | None:
@@ -125,7 +135,7 @@ def _stands(chain: Chain, x: Real, component: tuple[str, ...], point: Point) -> 
     return not is_force(point) and is_held(chain, x, component, point)
 
 
-def _read(question: Question, x: Array, found: Fields, told: Ports) -> Array:
+def _read(question: Question, x: Array, found: NodeFields, told: Ports) -> Array:
     """Return motion and forces, (drives, responses, f)."""
     at = {int(node): k for k, node in enumerate(found.node)}
     lines = []

@@ -1,5 +1,5 @@
 /* Gauss in wide numbers: exact systems, exchanges of rows, several loads. */
-#include "wide/gauss.h"
+#include "mixed/gauss.h"
 
 #include <math.h>
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 FLOORS = [
     "base",
-    "wide",
     "closed",
     "element",
     "chain",

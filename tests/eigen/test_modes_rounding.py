@@ -114,7 +114,7 @@ def test_refusals_of_random_scenes_are_right(few):
 
 
 def test_rounding_error_is_no_useless_bound(few):
-    assert np.median(few.overestimate) <= 1e3
+    assert np.median(few.overestimate) <= 10.0
 
 
 @pytest.mark.parametrize("seed", HARD)
@@ -129,7 +129,7 @@ def test_rounding_error_bounds_the_true_error_where_scales_meet(seed):
     f"rounding_error of a mode bounds the true error: share of the modes of {MANY} random scenes "
     "beyond it",
     reference=EXACT,
-    accepted=1e-3,
+    accepted=0.0,
 )
 def test_rounding_error_bounds_the_true_error_of_very_many_modes(many, claim):
     assert many.modes >= 10_000
@@ -151,7 +151,7 @@ def test_refusals_of_very_many_scenes_are_right(many):
 @pytest.mark.claim(
     f"rounding_error of a mode over the true error, median over {MANY} random scenes",
     reference=EXACT,
-    accepted=1e3,
+    accepted=10.0,
 )
 def test_rounding_error_of_very_many_modes_is_no_useless_bound(many, claim):
     claim(np.median(many.overestimate))

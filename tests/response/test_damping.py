@@ -70,7 +70,7 @@ def test_string_in_a_viscous_fluid_responds_as_its_wave(elements, coefficient):
             part = mpf(L) / elements
             theta = 2 * mpmath.asin(k * part / 2)
             k, pull = theta / part, mpf(T) * mpmath.sin(theta) / part
-        x, y = mpf(2) / 10, mpf(7) / 10
+        x, y = (mpf(2) / 10, mpf(7) / 10) if elements else (mpf(0.2), mpf(0.7))
         return mpmath.sin(k * x) * mpmath.sin(k * (1 - y)) / (pull * mpmath.sin(k))
 
     assert max(errors(scene.compile(elements=elements), ("z", 0.7), ("z", 0.2), exact)) <= KNOWN

@@ -34,8 +34,10 @@ def errors(model, drive, response, exact):
             omega, step = omega_of(f), mpf(10) ** -20
             h = exact(omega)
             error = relative(frf.value[0, k], h)
-            assert error <= frf.rounding_error[0, k]
-            found.append(error / float(1 + abs(exact(omega * (1 + step)) / h - 1) / step))
+            condition = float(1 + abs(exact(omega * (1 + step)) / h - 1) / step)
+            # places of a chain are tenths here and doubles there
+            assert error <= frf.rounding_error[0, k] + EPS / 4 * condition
+            found.append(error / condition)
     return found
 
 
@@ -59,9 +61,10 @@ def test_string_with_a_dashpot_responds_as_its_closed_form(elements, ratio, clai
             part = mpf(L) / elements
             theta = 2 * mpmath.asin(wavenumber(omega) * part / 2)
             k, pull = theta / part, mpf(T) * mpmath.sin(theta) / part
-        left, right = mpf(3) / 10, mpf(7) / 10
-        stiffness = pull * (mpmath.cot(k * left) + mpmath.cot(k * right)) + 1j * omega * mpf(c)
-        return mpmath.sin(k * mpf(1) / 10) / mpmath.sin(k * left) / stiffness
+        left, first = (mpf(3) / 10, mpf(1) / 10) if elements else (mpf(a), mpf(x))
+        stiffness = pull * (mpmath.cot(k * left) + mpmath.cot(k * (1 - left)))
+        stiffness += 1j * omega * mpf(c)
+        return mpmath.sin(k * first) / mpmath.sin(k * left) / stiffness
 
     claim(max(errors(scene.compile(elements=elements), ("z", a), ("z", x), exact)))
 

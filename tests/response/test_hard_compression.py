@@ -5,7 +5,7 @@ import math
 import mpmath
 import pytest
 from conftest import slow
-from exact_chain import Exact, error_over_condition, omega_of
+from exact_chain import DIGITS, Exact, error_over_condition, omega_of
 from mpmath import mpf
 from stored import stored
 from test_hard_resonances import secant
@@ -108,7 +108,9 @@ def test_element_next_to_its_own_critical_load_keeps_its_digits(
     worst = 0.0
     for f in (0.0, 1.0, 50.0, 500.0):
         for response in (("z", node), other):
-            error, covered = error_over_condition(model, f, ("z", node), response, digits=40)
+            # two critical loads at once, an element's and the chain's, leave 40 digits four
+            digits = DIGITS if n <= 4 else 40
+            error, covered = error_over_condition(model, f, ("z", node), response, digits=digits)
             assert covered <= 1, "rounding_error is no bound"
             worst = max(worst, error)
     claim(worst)

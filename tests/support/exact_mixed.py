@@ -4,6 +4,8 @@ import mpmath
 import numpy as np
 from mpmath import mpc, mpf
 
+from ropedyn.chain.wide import wide_of
+
 CHANNEL = {0: 0, 1: 2, 2: 1, 3: 2}
 """Section channel of the coordinates x, z, alpha, beta."""
 
@@ -51,6 +53,15 @@ def triple(chain, e, section, tension):
     return F, G, Q
 
 
+def wide_numbers(model):
+    """The chain of a model as its scene says it, in wider numbers taken as exact."""
+    chain = wide_of(model).chain
+    names = ("length", "tension", "flexibility", "mass", "stiffness", "hinge")
+    given = {name: getattr(chain, name) for name in names}
+    exact = np.vectorize(mpmath.mpmathify, otypes=[object])
+    return chain._replace(**{k: exact(array) for k, array in given.items() if array is not None})
+
+
 class Exact:
     """Solutions of one component of a model at one frequency.
 
@@ -59,7 +70,7 @@ class Exact:
     """
 
     def __init__(self, model, component, omega, damping=(1, 1, 1)):
-        chain = self.chain = model.chain.only(component)
+        chain = self.chain = wide_numbers(model).only(component)
         self.component, self.w = component, len(component)
         section, tension, spring = damping
         self.node, blocks = [], 0

@@ -51,9 +51,9 @@ def resonant(seed, kind):
     model = scene.compile(elements=count, element=line.model.element)
     x, places = model.x.tolist(), [line.drive, line.response]
     points = [(c, x[k]) for c, k in places]
-    return Resonant(
-        model, points, Exact(model, model.component_of(points[0][0])), places, line.frequency or 1.0
-    )
+    with mpmath.workdps(DIGITS):  # lengths are quotients
+        exact = Exact(model, model.component_of(points[0][0]))
+    return Resonant(model, points, exact, places, line.frequency or 1.0)
 
 
 def waves_of(scene, exact, f):

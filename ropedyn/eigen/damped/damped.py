@@ -24,7 +24,7 @@ from ...scene.damping import factors as damping_factors
 from ...scene.damping import having
 from ..eigen import check_asked
 from ..free_motion import MeshOfModes, Vectors
-from ..measured import Asked, measured
+from ..measured import SoughtRoots, measured
 from ..spectrum import lowest
 from ..vectors import UNSEEN, fractions, largest, points_for, within
 from .attached_energy import AttachedEnergy
@@ -263,7 +263,7 @@ def _rounding(model: Compiled, answer: DampedRates) -> Real:
     own = np.array([answer.parts[k][0] for k in answer.which], dtype=object)
     for component in model.components:
         mine = np.array([tuple(one) == component for one in own], dtype=np.bool_)
-        asked = Asked(
+        asked = SoughtRoots(
             answer.value[mine],
             answer.error[mine],
             lambda s: damping_factors(dampings, -1j * s).T,

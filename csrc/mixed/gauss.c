@@ -1,5 +1,5 @@
 /* Gauss with row exchanges, in the widest numbers there are. */
-#include "wide/gauss.h"
+#include "mixed/gauss.h"
 
 #include <math.h>
 
@@ -12,7 +12,7 @@
 #define SIZE(x) fabsl(x)
 #define CALLED(name) name
 #define LESS(a, b, c) ((a) - (b) * (c))
-#include "wide/number.h"
+#include "mixed/gauss_number.h"
 
 /* |re| + |im| */
 static inline long double size_of(long double _Complex x)
@@ -32,4 +32,4 @@ static inline long double _Complex less(long double _Complex a, long double _Com
 #define SIZE(x) size_of(x)
 #define CALLED(name) name##_complex
 #define LESS(a, b, c) less(a, b, c)
-#include "wide/number.h"
+#include "mixed/gauss_number.h"
