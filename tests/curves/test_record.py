@@ -305,7 +305,7 @@ def test_columns_are_named_or_numbered(tmp_path):
         (
             TEXT.replace("\n1/", "\n"),
             {"time": 9, "response": {1: POINTS[0]}},
-            "time must be a whole",
+            "time of .* must be a whole",
         ),
         (TEXT + "0.9,loud,1\n", {"time": 0, "response": {1: POINTS[0]}}, "'loud' in line 52"),
         (TEXT + "0.9,nan,1\n", {"time": 0, "response": {1: POINTS[0]}}, r"value\[0\]\[50\]"),

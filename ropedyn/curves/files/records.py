@@ -199,7 +199,8 @@ def _column(file: Path, sheet: Sheet, key: Any, argument: str) -> int:
                 f"{str(file)!r}, got {key!r}"
             )
         return (sheet.names or ()).index(key)
-    return check.count(key, argument, least=0, most=sheet.numbers.shape[1] - 1)
+    name = f"{argument} of {str(file)!r}"
+    return check.count(key, name, least=0, most=sheet.numbers.shape[1] - 1)
 
 
 def _refuse_said(file: Path, said: Said) -> None:
