@@ -338,6 +338,18 @@ def test_a_universal_file_without_motion_is_named(tmp_path):
         rd.Record.read(tmp_path / "a.uff")
 
 
+@pytest.mark.parametrize("rate", ["0.0", "-0.0", "nan", "-64.0"])
+def test_a_universal_file_of_no_rate_is_named(rate, tmp_path):
+    pytest.importorskip("pyuff")
+    time = np.arange(20) / 64
+    rd.Record(time, np.cos(time)[None], rate=64.0, response=[("z", 0.5)]).write(tmp_path / "a.uff")
+    text = (tmp_path / "a.uff").read_text()
+    assert "rate 64.0" in text
+    (tmp_path / "a.uff").write_text(text.replace("rate 64.0", f"rate {rate}"))
+    with pytest.raises(rd.SceneError, match=r"nobody changed, got .*a.uff"):
+        rd.Record.read(tmp_path / "a.uff")
+
+
 def test_gaps_are_no_part_of_a_universal_file(tmp_path):
     kept = (TIME < 7) | (TIME > 8)
     of = rd.Record(TIME[kept], motion()[:, kept], response=POINTS)

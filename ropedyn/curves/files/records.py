@@ -350,6 +350,8 @@ def _own_universal(
         if match is None:
             raise ValueError(found[0].fields["id3"])
         start, rate = float(match["start"]), float(match["rate"])
+        if not rate > 0:
+            raise ValueError(match["rate"])
         points = [(m["name"], float(m["x"])) for m in own if m is not None]
         rows = np.array([record.fields["data"] for record in found], dtype=np.float64)
     kinds = [m["what"] for m in own if m is not None]
