@@ -191,6 +191,55 @@ static void dislocations_and_forces_are_reciprocal(void)
     free(workspace.base);
 }
 
+/* says yes from one question on, and for ever after */
+static bool says_yes(void *context)
+{
+    int *left = context;
+    *left -= *left > 0;
+    return *left == 0;
+}
+
+/* lines and deflections end with whatever they are in: factors, substitutions, what is left */
+static void whoever_asks_to_stop_is_heard(void)
+{
+    enum { N = 9 };
+    struct line line;
+    line_make(&line, RD_TENSED, 2, N, 20.0, 2.0, 1.0, 1);
+    line_find(&line);
+    const int32_t node = 4;
+    const double row[4] = {1, 0, 0, 0};
+    const struct rd_ports ports = {1, &node, row, NULL};
+    struct rd_mixed_frf frf;
+    struct rd_mixed_deflection deflection;
+    struct rd_workspace measure = {0}, other = {0};
+    rd_mixed_frf_prepare(&line.chain, &ports, &ports, &frf, &measure);
+    struct rd_workspace workspace = exact_workspace(measure.used);
+    CHECK_INT(rd_mixed_frf_prepare(&line.chain, &ports, &ports, &frf, &workspace), RD_OK);
+    rd_mixed_deflection_prepare(&line.chain, &deflection, &other);
+    struct rd_workspace more = exact_workspace(other.used);
+    CHECK_INT(rd_mixed_deflection_prepare(&line.chain, &deflection, &more), RD_OK);
+    const complex_t factor[RD_PARTS] = {1, 1, 1, -400.0};
+    const double load[2 * (N + 1)] = {[8] = 1};
+    double error, u[2 * (N + 1)], force[2 * N];
+    complex_t h;
+    int questions = 0;
+    for (int late = 1; late < 100 && questions == 0; late++) {
+        int left = late;
+        frf.mixed.lu.stop = (struct rd_stop){says_yes, &left};
+        const enum rd_status status = rd_mixed_frf_solve(&frf, factor, 1, &h, &error);
+        CHECK_INT(status, left == 0 ? RD_INTERRUPTED : RD_OK);
+        left = late;
+        deflection.mixed.lu.stop = (struct rd_stop){says_yes, &left};
+        const enum rd_status deflected = rd_mixed_deflection_solve(&deflection, load, u, force);
+        CHECK_INT(deflected, left == 0 ? RD_INTERRUPTED : RD_OK);
+        questions = status == RD_OK && deflected == RD_OK ? late : 0;
+    }
+    /* a factorisation, and both ways through each of four solutions that are refined once */
+    CHECK(questions > 8);
+    free(workspace.base);
+    free(more.base);
+}
+
 int main(void)
 {
     for (size_t n = 3; n < 300; n *= 3)
@@ -208,5 +257,6 @@ int main(void)
     deflection_knows_its_forces();
     resonances_have_no_answer();
     dislocations_and_forces_are_reciprocal();
+    whoever_asks_to_stop_is_heard();
     return check_report("mixed");
 }

@@ -132,7 +132,7 @@ REFUSED = {
     "no such number": (
         "1,2,3\n",
         {"columns": {"frequency": 0, "real": 1, "imag": 3}},
-        r"columns\['imag'\] must be a whole number from 0 to 2",
+        r"columns\['imag'\] of '.*' must be a whole number from 0 to 2",
     ),
     "no such key": ("1,2,3\n", {"columns": {"freq": 0}}, "each key of columns must be one of"),
     "uneven": (

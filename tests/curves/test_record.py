@@ -305,7 +305,7 @@ def test_columns_are_named_or_numbered(tmp_path):
         (
             TEXT.replace("\n1/", "\n"),
             {"time": 9, "response": {1: POINTS[0]}},
-            "time must be a whole",
+            "time of .* must be a whole",
         ),
         (TEXT + "0.9,loud,1\n", {"time": 0, "response": {1: POINTS[0]}}, "'loud' in line 52"),
         (TEXT + "0.9,nan,1\n", {"time": 0, "response": {1: POINTS[0]}}, r"value\[0\]\[50\]"),
@@ -335,6 +335,18 @@ def test_a_universal_file_without_motion_is_named(tmp_path):
     model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
     model.frf([10.0, 11.0], drive=("z", 0.5)).write(tmp_path / "a.uff")
     with pytest.raises(rd.SceneError, match="function type 1"):
+        rd.Record.read(tmp_path / "a.uff")
+
+
+@pytest.mark.parametrize("rate", ["0.0", "-0.0", "nan", "-64.0"])
+def test_a_universal_file_of_no_rate_is_named(rate, tmp_path):
+    pytest.importorskip("pyuff")
+    time = np.arange(20) / 64
+    rd.Record(time, np.cos(time)[None], rate=64.0, response=[("z", 0.5)]).write(tmp_path / "a.uff")
+    text = (tmp_path / "a.uff").read_text()
+    assert "rate 64.0" in text
+    (tmp_path / "a.uff").write_text(text.replace("rate 64.0", f"rate {rate}"))
+    with pytest.raises(rd.SceneError, match=r"nobody changed, got .*a.uff"):
         rd.Record.read(tmp_path / "a.uff")
 
 

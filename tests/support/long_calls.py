@@ -234,10 +234,8 @@ CALLS = {
         lambda m: again(lambda: m.frf(LINES[:1000], drive=("z", 0.1))),
     ),
     "friction between wires": (
-        lambda: RUBBING.compile(),
-        lambda m: again(
-            lambda: m.frf(np.linspace(1.0, 9.0, 20), drive=("z", 1.8), amplitude=50.0)
-        ),
+        RUBBING.compile,
+        lambda m: again(lambda: m.frf(np.linspace(1.0, 9.0, 20), drive=("z", 1.8), amplitude=50.0)),
     ),
     "spreads of sections": (
         STRAND.section,

@@ -199,7 +199,8 @@ def _column(file: Path, sheet: Sheet, key: Any, argument: str) -> int:
                 f"{str(file)!r}, got {key!r}"
             )
         return (sheet.names or ()).index(key)
-    return check.count(key, argument, least=0, most=sheet.numbers.shape[1] - 1)
+    name = f"{argument} of {str(file)!r}"
+    return check.count(key, name, least=0, most=sheet.numbers.shape[1] - 1)
 
 
 def _refuse_said(file: Path, said: Said) -> None:
@@ -349,6 +350,8 @@ def _own_universal(
         if match is None:
             raise ValueError(found[0].fields["id3"])
         start, rate = float(match["start"]), float(match["rate"])
+        if not rate > 0:
+            raise ValueError(match["rate"])
         points = [(m["name"], float(m["x"])) for m in own if m is not None]
         rows = np.array([record.fields["data"] for record in found], dtype=np.float64)
     kinds = [m["what"] for m in own if m is not None]
