@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import math
+from contextlib import suppress
+from typing import cast
 
 from ..base.errors import SolveError
 from .direct.direct import march, why_not_march
@@ -16,19 +17,17 @@ from .volterra import follows, has_calls, integrate
 
 
 def _by_events(run: Run) -> History:
-    """Return the motion from event to event, or by another method that is sure of more of it."""
+    """Return the motion from event to event, or by another method that is sure of all of it."""
+    whole = run.but(partial=False)
     try:
-        found = solve_events(run)
-    except SolveError:
-        if not follows(run):
-            raise
-        return integrate(run)
-    if math.isinf(found.sure_until) or not follows(run):
-        return found
-    try:
-        return integrate(run)
-    except SolveError:
-        return found
+        return solve_events(whole)
+    except SolveError as refusal:
+        if follows(whole):
+            with suppress(SolveError):
+                return integrate(whole)
+        if run.partial and refusal.history is not None:
+            return cast("History", refusal.history)
+        raise
 
 
 def follow_motion(run: Run) -> History:
