@@ -254,6 +254,20 @@ def test_what_steps_alone_know_is_refused(asked):
     assert model.transient([0.0, 0.1], **PUSH, **asked).cost.method == "direct"
 
 
+def test_motion_known_for_a_part_of_the_time_is_refused_with_that_time():
+    model = rope(rd.Stop(0.5, 1e4)).compile(elements=4)
+    # the push is nudged by 1e-11 to see what rounding does: less is never known
+    asked = {"tolerance": 1e-13, "method": "events", **PUSH}
+    time = np.linspace(0.0, 0.05, 101)
+    with pytest.raises(rd.SolveError, match="1e-13 of its largest value until t = 0") as refused:
+        model.transient(time, **asked)
+    history = model.transient(time, **asked, partial=True)
+    late = time > history.sure_until
+    assert late.any() and np.isinf(history.error[:, late]).all()
+    assert np.isfinite(history.error[:, ~late]).all()
+    np.testing.assert_array_equal(history.value, refused.value.history.value)
+
+
 @pytest.mark.long
 def test_chaos_says_until_when_it_is_known():
     """Two stiff stops without damping: rounding is the motion after a while."""
