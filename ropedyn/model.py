@@ -372,7 +372,7 @@ class Model(Compiled):
             True: a line on stderr; a callable takes the fraction that is done.
         partial : bool
             True: where steps fail, or at Ctrl-C, what was computed before is the answer, see
-            `History.stopped`.
+            `History.stopped`; where contacts make motion chaotic, see `History.sure_until`.
 
         Returns
         -------

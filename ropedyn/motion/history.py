@@ -92,9 +92,9 @@ class History(Answer):
     snapshot : ndarray, shape (s, nodes, coordinates)
         Displacement of the whole rope [m, rad].
     sure_until : float
-        Where stops and friction make motion chaotic: until when modes, elements apart, and rounding
-        leave it within the tolerance [s]; errors are infinite after it. Infinite where nothing
-        limits it.
+        Where stops and friction make motion chaotic and ``partial=True`` asked for it anyway: until
+        when modes, elements apart, and rounding leave it within the tolerance [s]; errors are
+        infinite after it. Infinite where nothing limits it.
     stopped : str
         Why it ends before the last time that was asked for; empty where it does not.
     released : bool

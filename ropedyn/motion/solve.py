@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import math
+from contextlib import suppress
+from typing import cast
 
 from ..base.errors import SolveError
 from .history import History
@@ -15,17 +16,16 @@ from .volterra import integrate
 
 
 def _by_events(run: Run) -> History:
-    """Return the motion from event to event, or by another method that is sure of more of it."""
+    """Return the motion from event to event, or by another method that is sure of all of it."""
+    whole = run.but(partial=False)
     try:
-        found = solve_events(run)
-    except SolveError:
-        return integrate(run)
-    if math.isinf(found.sure_until):
-        return found
-    try:
-        return integrate(run)
-    except SolveError:
-        return found
+        return solve_events(whole)
+    except SolveError as refusal:
+        with suppress(SolveError):
+            return integrate(whole)
+        if run.partial and refusal.history is not None:
+            return cast("History", refusal.history)
+        raise
 
 
 def follow_motion(run: Run) -> History:

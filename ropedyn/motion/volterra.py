@@ -43,7 +43,7 @@ from .smooth.laws import LawFailure, SmoothLaw
 from .smooth.smooth import scale
 
 FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, at first at least and at most.
-SHARPER = 0.2  # Linear motion is known to this part of the tolerance, if it can be,
+SHARPER = 0.05  # Linear motion is known to this part of the tolerance, if it can be,
 SHAPED = 0.25  # from shapes and velocities to this.
 TIMES = 2.0  # A run is off by so many times its distance to one with steps twice as long.
 BLOCK = 2048  # So many steps are taken at a time.

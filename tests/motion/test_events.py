@@ -244,12 +244,26 @@ def test_answer_is_saved_with_the_time_it_is_sure_until(tmp_path):
     assert rd.load(tmp_path / "h.nc").sure_until == history.sure_until == math.inf
 
 
-@pytest.mark.parametrize("asked", [{"partial": True}, {"velocity": {("z", 0.5): 0.1}}])
+@pytest.mark.parametrize("asked", [{"velocity": {("z", 0.5): 0.1}}])
 def test_what_phases_do_not_begin_with_is_refused(asked):
     model = rope(rd.Stop(0.5, 1e4)).compile(elements=4)
-    with pytest.raises(rd.SceneError, match=r"partial, velocity and shapes must be left out"):
+    with pytest.raises(rd.SceneError, match=r"velocity and shapes must be left out"):
         model.transient([0.0, 0.1], method="events", **PUSH, **asked)
     assert model.transient([0.0, 0.1], **PUSH, **asked).cost.method == "volterra"
+
+
+def test_motion_known_for_a_part_of_the_time_is_refused_with_that_time():
+    model = rope(rd.Stop(0.5, 1e4)).compile(elements=4)
+    # the push is nudged by 1e-11 to see what rounding does: less is never known
+    asked = {"tolerance": 1e-13, "method": "events", **PUSH}
+    time = np.linspace(0.0, 0.05, 101)
+    with pytest.raises(rd.SolveError, match="1e-13 of its largest value until t = 0") as refused:
+        model.transient(time, **asked)
+    history = model.transient(time, **asked, partial=True)
+    late = time > history.sure_until
+    assert late.any() and np.isinf(history.error[:, late]).all()
+    assert np.isfinite(history.error[:, ~late]).all()
+    np.testing.assert_array_equal(history.value, refused.value.history.value)
 
 
 @pytest.mark.long
@@ -258,10 +272,16 @@ def test_chaos_says_until_when_it_is_known():
     stops = (rd.Stop(0.5, 1e7, gap=1e-4), rd.Stop(0.5, 1e7, gap=1e-4, side=-1))
     model = rope(*stops, damping=None).compile(elements=8, element="rigid")
     time = np.linspace(0.0, 0.1, 201)
-    history = model.transient(time, response=("z", 0.5), **PUSH)
+    asked = {"response": ("z", 0.5), **PUSH}
+    with pytest.raises(rd.SolveError, match=r"until t = 0\.0\d+ s, by .* events") as refused:
+        model.transient(time, **asked)
+    history = model.transient(time, **asked, partial=True)
+    np.testing.assert_array_equal(refused.value.history.error, history.error)
     assert 0.02 < history.sure_until < 0.1
     known = time <= history.sure_until
-    longer = model.transient(np.linspace(0.0, 0.11, 221), response=("z", 0.5), **PUSH)
+    assert np.isfinite(history.error[:, known]).all()
+    assert np.isinf(history.error[:, ~known]).all()
+    longer = model.transient(np.linspace(0.0, 0.11, 221), **asked, partial=True)
     apart = np.abs(longer.value[0, :201] - history.value[0])
     assert (apart[known] <= 1e-3 * np.abs(history.value).max()).all()
 

@@ -143,7 +143,8 @@ class Line:
     def _beyond(self) -> Complex:
         """Rates at and beyond the highest, the last two where modes of a chain are over."""
         beyond = [LOOKS, LOOKS[0] * NEAR, FAR * LOOKS[-2:]]
-        return self.grid.omega * np.concatenate(beyond if self._is_chain else beyond[:1])
+        some = np.concatenate(beyond if self._is_chain else beyond[:1])
+        return np.asarray(self.grid.omega * some, dtype=np.complex128)
 
     @computed
     def _far(self) -> Complex:

@@ -61,8 +61,8 @@ def _in_blocks(modes: Oscillators, h: float, sample: Real) -> Real:
     force = np.lib.stride_tricks.sliding_window_view(padded, size + 1)[::size]
     slope = np.diff(force, axis=1)
     given = np.concatenate([force[:, :1], slope[:, :1], np.diff(slope, axis=1)], axis=1)
-    count = np.arange(1, size + 1)
-    part = changes(modes.sigma, modes.square, h * count)
+    count = np.arange(1.0, size + 1)
+    part = changes(modes.sigma, modes.square, np.asarray(h * count))
     change = np.ascontiguousarray(part[-1:, FREE])
     held, grown = part[:, HELD], part[:, RAMP] * count[:, None, None]
     gain = np.concatenate([held[-1:], grown[::-1]]).reshape(size + 1, -1)

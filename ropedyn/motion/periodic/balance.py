@@ -50,9 +50,9 @@ class HarmonicBalance:
 
     @computed
     def pairs(self) -> Index:
-        """Where k - l is among the samples' harmonics, (K + 1, 2K + 1) for l = -K..K."""
+        """Where k - l is among the harmonics -2K..2K, (K + 1, 2K + 1) for l = -K..K."""
         across = np.arange(-self.harmonics, self.harmonics + 1)
-        return np.asarray((np.arange(self.harmonics + 1)[:, None] - across) % self.samples)
+        return np.arange(self.harmonics + 1)[:, None] - across + 2 * self.harmonics
 
     def complex(self, x: Real) -> Complex:
         """Return the harmonics, (points, K + 1), of the unknowns."""
@@ -129,7 +129,9 @@ class HarmonicBalance:
 
     def _toeplitz(self, slope: Real) -> Complex:
         """Return the coefficients k - l of slopes, (points, points, K + 1, 2K + 1)."""
-        return np.asarray(np.fft.fft(slope, axis=2)[..., self.pairs] / self.samples)
+        ahead = np.fft.rfft(slope, axis=2)[..., : 2 * self.harmonics + 1] / self.samples
+        every = np.concatenate([ahead[..., :0:-1].conj(), ahead], axis=2)
+        return np.asarray(every[..., self.pairs])
 
 
 def _on(H: Complex, push: Complex) -> Complex:

@@ -68,13 +68,15 @@ class Branch:
         size = self._size(before.x)
         x, p = before.x + step * before.along, before.p + step * before.up
         row = np.append(before.along / size**2, before.up / self.scale**2)
-        off = np.zeros(len(x) + 1)
+        off, n = np.zeros(len(x) + 1), len(x) + 1
+        matrix, right = np.zeros((n, n)), np.zeros((n, 2))
+        matrix[-1], right[-1, 1] = row, 1.0
         for turn in range(NEWTON):
             G, J, by_p = self.linearise(x, p)
             self.newtons += 1
-            matrix = np.block([[J, by_p[:, None]], [row]])
+            matrix[:-1, :-1], matrix[:-1, -1], right[:-1, 0] = J, by_p, -G
             try:
-                change = np.linalg.solve(matrix, np.append(-G, 0.0))
+                change, tangent = np.linalg.solve(matrix, right).T
             except np.linalg.LinAlgError:
                 return None
             x, p, off = x + change[:-1], p + float(change[-1]), off + change
@@ -83,7 +85,6 @@ class Branch:
                 return None
             if far <= ENOUGH:
                 away = np.hypot(np.linalg.norm(off[:-1]) / size, off[-1] / self.scale)
-                tangent = np.linalg.solve(matrix, np.append(np.zeros(len(x)), 1.0))
                 return self._unit(x, p, tangent), turn + 1, float(away)
         return None
 

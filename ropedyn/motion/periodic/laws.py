@@ -102,14 +102,13 @@ def _stop(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:
     k, gap, side = one.law.value
     step = (time[-1] - time[0]) / (len(time) - 1)
     # where v passes 0 it is the acceleration that moves
-    passing = np.hypot(v, np.abs(np.diff(v, append=v[:1])).max() / 4)
-    a, w = side * u - gap, np.maximum(passing * step / 2, TINY)
-    share = np.clip((a + w) / (2 * w), 0.0, 1.0)
-    begins = np.abs(a) < w
-    deep = np.where(begins, share**2 * w, np.maximum(a, 0.0))
-    by_w = np.where(begins, share * (1 - share), 0.0)
-    moves = np.divide(v, passing, out=np.zeros_like(v), where=passing > 0) * step / 2
-    return -side * k * deep, -k * share, -side * k * by_w * moves
+    turns = max(float(np.abs(v[1:] - v[:-1]).max()), abs(float(v[0] - v[-1]))) / 4
+    passing = np.hypot(v, turns) if turns else np.full_like(v, TINY)
+    a, w = side * u - gap, np.maximum(passing * (step / 2), TINY)
+    share = np.minimum(np.maximum((a + w) / (2 * w), 0.0), 1.0)
+    deep = np.where(share < 1, share * share * w, a)
+    by_v = share * (1 - share) * (v / passing) * (-side * k * step / 2)
+    return -side * k * deep, -k * share, by_v
 
 
 def _call(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:

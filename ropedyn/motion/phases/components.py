@@ -97,8 +97,8 @@ def rest(one: Moving, nudge: float) -> Instant:
 def why_not_events(run: Run) -> str:
     """Say what phases do not take, with nothing where they take all."""
     model = run.model
-    if run.partial or run.is_shaped:
-        return "partial, velocity and shapes must be left out"
+    if run.is_shaped:
+        return "velocity and shapes must be left out"
     for one in scene_laws(model.scene):
         if not (one.law.kind == "stop" or (one.law.kind == "power" and one.law.value[1] == 0)):
             part = model.scene.parts[one.part]

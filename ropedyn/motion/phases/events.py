@@ -11,7 +11,7 @@ import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Real
-from ...base.errors import SceneError
+from ...base.errors import SceneError, SolveError
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ..history import History
@@ -91,7 +91,7 @@ def solve_events(run: Run) -> History:
     error[:, run.time > sure] = np.inf
     width = len(run.model.coordinates)
     kept = found.seen[1] if len(looks) > 1 else np.zeros((len(points), 0))
-    return History(
+    history = History(
         **run.kept.told,
         value=value,
         x=x,
@@ -99,9 +99,20 @@ def solve_events(run: Run) -> History:
         cost=Cost("events", len(run.model.x) - 1, found.modes),
         balance=partial(balance, run.kept, found.modes),
         error=error,
-        mesh_error=partial(against_spans, run.kept, value, solve_events),
+        mesh_error=partial(against_spans, run.kept.but(partial=True), value, solve_events),
         sure_until=sure,
     )
+    if math.isinf(sure) or run.partial:
+        return history
+    least = run.tolerance or TOLERANCE
+    refusal = SolveError(
+        f"the motion is known to {least:g} of its largest value until t = {sure:.6g} s, by "
+        f"{found.modes} modes and {len(found.events)} events: what is left out and rounding grow "
+        "from contact to contact. A larger tolerance or a shorter time help, and partial=True "
+        "returns it with infinite errors after that"
+    )
+    refusal.history = history
+    raise refusal
 
 
 def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
