@@ -12,7 +12,6 @@ import timing  # before numpy
 # isort: on
 import importlib.util
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,9 +27,6 @@ FREQUENCY = 70.0
 AT = 24
 """Node that is pushed and watched."""
 TIME = np.arange(round(SECONDS * RATE) + 1) / RATE
-FINER = (1, 2, 4, 8)
-"""Steps of the direct method in one interval of the output."""
-
 MODEL = (
     scene.model("uniform", ELEMENTS, twist=False, rotary=True)
     .scene.replace(damping=rd.RayleighDamping(0.0, scene.GAMMA))
@@ -91,18 +87,9 @@ def sampled() -> np.ndarray:
     return MODEL.transient(TIME, drive=WHERE, force=FORCE, method="modal").value[0]
 
 
-def direct(steps: int) -> np.ndarray:
+def line() -> np.ndarray:
     force = rd.Sine(1.0, FREQUENCY)
-    return MODEL.transient(
-        TIME, drive=WHERE, force=force, method="direct", step=1 / (RATE * steps)
-    ).value[0]
-
-
-def every_other() -> np.ndarray:
-    """March with steps of two samples, at whose ends alone there are values."""
-    force = rd.Sine(1.0, FREQUENCY)
-    value = MODEL.transient(TIME[::2], drive=WHERE, force=force, method="direct", step=2 / RATE)
-    return value.value[0]
+    return MODEL.transient(TIME, drive=WHERE, force=force, method="line").value[0]
 
 
 def scipy_lsim() -> np.ndarray:
@@ -229,8 +216,7 @@ def calls() -> dict[str, Callable[[], np.ndarray]]:
     own = {
         "ropedyn, modal, Sine": modal,
         "ropedyn, modal, samples": sampled,
-        "ropedyn, direct, 1 in two samples": every_other,
-        **{f"ropedyn, direct, {k} in a sample": partial(direct, k) for k in FINER},
+        "ropedyn, line, Sine": line,
         "scipy.signal.lsim": scipy_lsim,
     }
     peers = {"exudyn": ("exudyn", exudyn), "openseespy": ("OpenSees", opensees)}
