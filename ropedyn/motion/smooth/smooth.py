@@ -165,8 +165,7 @@ def agree(
             # where velocities turn or contact begins, two runs may agree by chance
             before = apart / system.falls if apart.size else 0.0
             apart = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
-            apart = np.maximum(apart, before)
-            found.step_error = TIMES * apart + rounding(looked[0], system.time)
+            found.step_error = TIMES * np.maximum(apart, before) + rounding(looked[0], system.time)
             worst = float((found.step_error / size).max(initial=0.0))
             if worst <= tolerance:
                 return found
