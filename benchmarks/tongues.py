@@ -17,7 +17,7 @@ import report
 from scipy.integrate import solve_ivp
 
 import ropedyn as rd
-from ropedyn.parametric.modal_system import ModalSystem
+from ropedyn.motion.modal_system import ModalSystem
 from ropedyn.parametric.monodromy import exponent
 from ropedyn.parametric.tongues import threshold
 

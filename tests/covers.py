@@ -23,7 +23,7 @@ FOLDERS = {
         *("csrc/energy", "csrc/assembled"),
     ],
     "experiment": ["ropedyn/experiment", "ropedyn/family", "csrc/closed"],
-    "motion": [*ROPE, "ropedyn/motion", "csrc/march", "csrc/collocation"],
+    "motion": [*ROPE, "ropedyn/motion", "csrc/volterra", "csrc/law", "csrc/collocation"],
     "parametric": [*ROPE, "ropedyn/parametric"],
     "response": [
         *ROPE,

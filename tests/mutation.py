@@ -45,7 +45,7 @@ CHAPTERS = {
     "element": ("chain", "response", "eigen"),
     "energy": ("eigen", "response", "chain"),
     "glue": ("project", "response", "eigen", "motion", "family", "chain"),
-    "march": ("motion",),
+    "volterra": ("motion",),
     "mixed": ("chain", "response", "motion"),
     "modes": ("eigen", "chain"),
     "span": ("eigen", "response", "chain"),

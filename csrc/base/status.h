@@ -12,10 +12,8 @@ enum rd_status {
     RD_UNSTABLE_MASSLESS,     /* stiffness is not positive on coordinates without mass */
     RD_NO_CONVERGENCE,        /* an eigensolver gave up */
     RD_CLUSTER,               /* more modes lie closer together than are told apart */
-    RD_FAST_GROWTH,           /* motion grows by more than an implicit step resolves */
-    RD_SPREAD_INERTIA, /* a structure has inertia along its length, which cannot be marched */
-    RD_SHORT_WAVES,    /* a span has more pieces shorter than its waves than are walked */
-    RD_INTERRUPTED,    /* the caller asked to stop */
+    RD_SHORT_WAVES,           /* a span has more pieces shorter than its waves than are walked */
+    RD_INTERRUPTED,           /* the caller asked to stop */
 };
 
 #endif

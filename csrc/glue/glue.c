@@ -29,11 +29,6 @@ static const char *text_of(enum rd_status status)
         return "the eigensolver did not converge";
     case RD_CLUSTER:
         return "512 modes or more lie within a relative 1e-8 of each other and are not told apart";
-    case RD_FAST_GROWTH:
-        return "compression makes the motion grow by more than one step resolves: use shorter "
-               "steps";
-    case RD_SPREAD_INERTIA:
-        return "a broken wire has inertia along its length, which cannot be marched through time";
     case RD_SHORT_WAVES:
         return "a span has more than 10000000 pieces shorter than its waves, or numbers overflow: "
                "check the units";

@@ -35,10 +35,10 @@ static void begin(struct mass *mass, double h, double v, const int32_t *kind, co
 static enum rd_status go(struct mass *mass, size_t until)
 {
     struct rd_workspace workspace = {0};
-    struct rd_volterra_work work;
-    rd_volterra_work(1, &workspace, &work);
+    struct rd_law_step work;
+    rd_law_step_work(1, &workspace, &work);
     workspace = (struct rd_workspace){malloc(workspace.used), workspace.used, 0};
-    rd_volterra_work(1, &workspace, &work);
+    rd_law_step_work(1, &workspace, &work);
     const enum rd_status status = rd_volterra_run(&mass->system, until, &work, &mass->run);
     free(workspace.base);
     return status;

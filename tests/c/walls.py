@@ -26,13 +26,9 @@ FLOORS = [
     "collocation",
     "volterra",
     "space",
-    "march/form",
-    "march/kernel",
-    "march",
     "glue",
     "glue/closed",
     "glue/laws",
-    "glue/march",
 ]
 """Folders of csrc from the ground up: a file may include what lies in its own or one before it."""
 

@@ -27,7 +27,7 @@ def test_steady_motion_of_a_linear_scene_is_its_response(study):
 
 
 def test_steady_motion_is_what_integration_over_time_settles_on(study):
-    """A stop that is met for half of the period, against exact phases or steps through 200 periods."""
+    """A stop that is met for half of the period, against motion over 200 periods."""
     f = 69.4
     scene = study.scene.replace(parts=[rd.Stop(DRIVE[1], 2e4)])
     model = scene.compile(elements=8, element="difference")

@@ -7,8 +7,8 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import ropedyn as rd
+from ropedyn.motion.modal_system import modal_system
 from ropedyn.parametric.floquet import converged
-from ropedyn.parametric.modal_system import modal_system
 from ropedyn.parametric.monodromy import exponential, finite, monodromy, rates, steps_for
 
 MATHIEU = {

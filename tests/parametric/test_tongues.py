@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import mathieu_a, mathieu_b
 
+from ropedyn.motion.modal_system import ModalSystem
 from ropedyn.parametric import decay, hill, krein
-from ropedyn.parametric.modal_system import ModalSystem
 from ropedyn.parametric.monodromy import Propagator, exponent
 from ropedyn.parametric.tongues import boundary, threshold
 

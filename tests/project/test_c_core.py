@@ -33,9 +33,9 @@ def test_include_of_a_higher_floor_and_a_circle_are_complained_of(tmp_path):
         "base/dense.h": "",
         "base/dense.c": '#include "base/dense.h"\n#include "sweep/plan.h"\n',
         "sweep/plan.h": '#include "base/dense.h"\n#include "plan.h"\n',
-        "march/plan.h": "",
-        "march/plan.c": '#include "march/plan.h"\n#include "march/run.h"\n',
-        "march/run.h": '#include "march/plan.h"\n',
+        "volterra/plan.h": "",
+        "volterra/plan.c": '#include "volterra/plan.h"\n#include "volterra/run.h"\n',
+        "volterra/run.h": '#include "volterra/plan.h"\n',
         "elsewhere/new.c": "",
     }
     for name, text in made.items():
@@ -46,5 +46,5 @@ def test_include_of_a_higher_floor_and_a_circle_are_complained_of(tmp_path):
         "elsewhere/new.c: its folder is missing in FLOORS of tests/c/walls.py",
         'sweep/plan.h: "plan.h" is no file of csrc; includes name their folder',
         "a circle of includes: base/dense -> sweep/plan -> base/dense",
-        "a circle of includes: march/plan -> march/run -> march/plan",
+        "a circle of includes: volterra/plan -> volterra/run -> volterra/plan",
     ]

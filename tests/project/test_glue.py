@@ -105,83 +105,41 @@ CUT_STRING = (
     np.zeros(3, np.uint8),
 )
 
-# of a march: what acts beside CHAIN, two laws, half a midpoint step of 1 ms, a node that moves
-PER_ELEMENT = np.full(len(CHAIN.length), 1e-3)
-BESIDE = (PER_ELEMENT, 1e-3, 100 * PER_ELEMENT, PER_ELEMENT, 1.0, 0.1)
 LAW_NUMBERS = (
     np.array([0, 1], dtype=np.int32),
     np.array([[0.1, 0.5, 0.0, 0.0], [10.0, 1e-4, 1.0, 0.1]]),
 )
-LAW = (np.array([2, 4], dtype=np.int32), np.ones((2, 2, WIDTH)), *LAW_NUMBERS)
-UNSTRETCHED = (*BESIDE[:4], 0.0, 0.1)
-G, H = 0.25, 1e-3
-MOVED = np.array([[0, 0]], dtype=np.int32)
-DRIVE = (*PORT, None)
-THREE, TENSION, ONE = np.ones((3, 2, 1)), np.ones((3, 2)), np.ones(1)
-MARCHED = CHAIN._replace(attached_kind=np.zeros(2, dtype=np.int32))
 
 
-def without_wire(chain):
-    """The chain with two resonators where it has one of each."""
-    if chain is CHAIN:
-        return MARCHED
-    kind = getattr(chain, "attached_kind", None)
-    same = np.array_equal(kind, CHAIN.attached_kind) and kind.dtype.kind == "i"
-    return chain._replace(attached_kind=np.zeros_like(kind)) if same else chain
-
-
-PLAN = _core.march_factor(without_wire(CHAIN), BESIDE, LAW, 2.5e-4, 1.0)
-
-
-def at_rest():
-    """A state of CHAIN."""
-    u, v, f = np.zeros((NODES, WIDTH)), np.zeros((NODES, WIDTH)), np.zeros((NODES - 1, WIDTH))
-    return u, v, f, np.zeros(2), np.zeros(2)
-
-
-# no starred arguments: where memory fails Python loses what it has unpacked of them
-
-
-def marched(chain):
-    chain, plan, state = without_wire(chain), PLAN.copy(), at_rest()
-    return state + _core.march(
-        chain,
-        BESIDE,
-        LAW,
-        plan,
-        G,
-        H,
-        state,
-        DRIVE,
-        THREE,
-        MOVED,
-        THREE,
-        TENSION,
-        DRIVE,
-        True,
-        True,
-    )
-
-
-def staged(chain):
-    chain, plan, state = without_wire(chain), PLAN.copy(), at_rest()
-    return _core.march_stage(chain, UNSTRETCHED, LAW, plan, G, H, state, 0, DRIVE, ONE, MOVED, ONE)
-
-
-def finished(chain):
-    chain, plan, state = without_wire(chain), PLAN.copy(), at_rest()
-    _core.march_finish(chain, UNSTRETCHED, LAW, plan, G, H, state, 1, np.ones(2))
-    return state
-
-
-def stepped(**given):
-    """March with some arguments replaced."""
-    usual = {"plan": PLAN.copy(), "g": G, "h": H, "state": at_rest()}
-    usual |= {"moved": MOVED, "speed": THREE, "extra": TENSION}
+def coupled(**given):
+    """Two steps of three modes under two laws, with some arguments replaced."""
+    modes, laws, steps = 3, 2, 2
+    usual = {
+        "step": (0.0, 1e-3, np.ones((2, 2, modes)), np.full((2, modes), 1e-6)),
+        "laws": (*LAW_NUMBERS, (None, None)),
+        "row": np.ones((laws, modes)),
+        "form": np.eye(modes),
+        "drag": np.eye(modes),
+        "tension": np.ones(steps),
+        "known": np.full((steps + 1, modes), 1e-3),
+        "state": np.zeros((steps + 1, 2, modes)),
+        "pushed": np.zeros((steps + 1, modes)),
+        "force": np.zeros((steps + 1, laws)),
+        "largest": np.zeros(1),
+        "size": np.zeros(laws),
+    }
     one = usual | given
-    return _core.march(
-        *(MARCHED, BESIDE, LAW, one["plan"], one["g"], one["h"], one["state"], DRIVE, THREE),
-        *(one["moved"], one["speed"], one["extra"], DRIVE, True, True),
+    coupling = one["row"], one["form"], one["drag"], one["tension"], 1.0
+    return _core.modal_steps(
+        one["step"],
+        one["laws"],
+        coupling,
+        one["known"],
+        one["state"],
+        one["pushed"],
+        one["force"],
+        one["largest"],
+        one["size"],
     )
 
 
@@ -237,10 +195,6 @@ ENTRIES = {
     "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES, MOTIONS, np.array([1e4, 1e6])),
     "pair_slopes": lambda chain: _core.pair_slopes(chain, *PAIRED),
     "carried_pair_slopes": lambda chain: _core.carried_pair_slopes(chain, *PAIRED),
-    "march_factor": lambda chain: _core.march_factor(without_wire(chain), BESIDE, LAW, 1e-3, 1.0),
-    "march": marched,
-    "march_stage": staged,
-    "march_finish": finished,
 }
 # those that have a meaning for continuous chains
 SPANS = {
@@ -267,9 +221,7 @@ SPANS = {
 OTHERS = {
     "section": lambda _: _core.section(1.0, 1.0, 1.0, 0.1, 0.1),
     "invert": lambda _: _core.invert(MATRIX),
-    "march_laws": lambda _: _core.march_laws(
-        LAW_NUMBERS, 1e-3, np.ones(2), MATRIX, np.zeros(2), np.zeros(2)
-    ),
+    "modal_steps": lambda _: coupled()[:-1],
     "recurrence": lambda _: _core.recurrence(*STEPPED),
     "volterra": lambda _: _core.volterra(
         *VOLTERRA, np.zeros((2, 2)), np.zeros((2, 3)), np.zeros(2), 0, 2
@@ -844,119 +796,40 @@ for name, s in LENGTHS.items():
         f"local from {name}": (lambda s=s: _core.local(CHAIN, 0, 0.0, s), ValueError, "p must"),
     }
 REFUSED |= {
-    "march beside of a list": (
-        lambda: _core.march_factor(MARCHED, list(BESIDE), LAW, 1e-3, 0.0),
+    "coupled modes under laws of a kind there is not": (
+        lambda: coupled(laws=(LAW_NUMBERS[0] + 2, LAW_NUMBERS[1], (None, None))),
+        ValueError,
+        r"kind\[0\] must be 0, 1, or 2 of what is called, got 2",
+    ),
+    "coupled modes under laws of a list": (
+        lambda: coupled(laws=[*LAW_NUMBERS, (None, None)]),
         TypeError,
-        "beside must be a tuple",
+        "must be",
     ),
-    "march beside too few elements": (
-        lambda: _core.march_factor(MARCHED, (PER_ELEMENT[1:], *BESIDE[1:]), LAW, 1e-3, 0.0),
+    "coupled modes with a form of fewer": (
+        lambda: coupled(form=np.eye(2)),
         ValueError,
-        "rate must have",
+        "form must have 3 entries",
     ),
-    "march with a string too short": (
-        lambda: _core.march_factor(
-            MARCHED, (*BESIDE[:2], PER_ELEMENT[1:], *BESIDE[3:]), LAW, 1e-3, 0.0
-        ),
+    "coupled modes with a drag of fewer": (
+        lambda: coupled(drag=np.eye(2)),
         ValueError,
-        "string must have",
+        "drag must have 3 entries",
     ),
-    "march law of a list": (
-        lambda: _core.march_factor(MARCHED, BESIDE, list(LAW), 1e-3, 0.0),
-        TypeError,
-        "law must be a tuple",
-    ),
-    "march law of a kind there is not": (
-        lambda: _core.march_factor(MARCHED, BESIDE, (*LAW[:2], LAW[2] + 2, LAW[3]), 1e-3, 0.0),
+    "coupled modes that are known at fewer times": (
+        lambda: coupled(known=np.ones((2, 3))),
         ValueError,
-        r"law kind\[1\] must lie in 0 ... 2, got 3",
+        "known must have 3 entries",
     ),
-    "march law beyond the rope": (
-        lambda: _core.march_factor(MARCHED, BESIDE, (LAW[0] + 5, *LAW[1:]), 1e-3, 0.0),
+    "coupled modes of a state of integers": (
+        lambda: coupled(state=np.zeros((3, 2, 3), dtype=int)),
         ValueError,
-        r"law\[1\] must lie in 0 ... 7, got 9",
+        "state must be a writable array",
     ),
-    "march law with too few numbers": (
-        lambda: _core.march_factor(MARCHED, BESIDE, (*LAW[:3], LAW[3][:, 1:]), 1e-3, 0.0),
+    "coupled modes of a state that cannot be written": (
+        lambda: coupled(state=still(np.zeros((3, 2, 3)))),
         ValueError,
-        "law value must have 4 entries along axis 1",
-    ),
-    "laws of a list": (
-        lambda: _core.march_laws(list(LAW_NUMBERS), 1e-3, ONE, MATRIX, ONE, ONE),
-        TypeError,
-        "law must be a tuple",
-    ),
-    "laws with too few increments": (
-        lambda: _core.march_laws(LAW_NUMBERS, 1e-3, ONE, MATRIX, ONE, ONE),
-        ValueError,
-        "increment must have 2 entries",
-    ),
-    "march of a broken wire": (
-        lambda: _core.march_factor(CHAIN, BESIDE, LAW, 1e-3, 0.0),
-        rd.SolveError,
-        "broken wire",
-    ),
-    "march of another plan": (
-        lambda: stepped(plan=PLAN[1:]),
-        ValueError,
-        "plan must be a contiguous writable array",
-    ),
-    "march of a plan that cannot be written": (
-        lambda: stepped(plan=still(PLAN.copy())),
-        ValueError,
-        "plan must be a contiguous writable array",
-    ),
-    "march of another step": (lambda: stepped(h=2e-3), ValueError, "theta = g h"),
-    "march of no step": (lambda: stepped(g=0.5, h=5e-4), ValueError, "theta = g h"),
-    "march of a state of lists": (
-        lambda: stepped(state=list(at_rest())),
-        TypeError,
-        "state must be a tuple of five arrays",
-    ),
-    "march of a state of numbers": (lambda: stepped(state=(0,) * 5), ValueError, "u must be"),
-    "march of a state of integers": (
-        lambda: stepped(state=(np.zeros((NODES, WIDTH), dtype=int), *at_rest()[1:])),
-        ValueError,
-        "u must be a contiguous writable array",
-    ),
-    "march of a state too short": (
-        lambda: stepped(state=(*at_rest()[:2], np.zeros((NODES, WIDTH)), *at_rest()[3:])),
-        ValueError,
-        "f must be a contiguous writable array",
-    ),
-    "march that moves what is free": (
-        lambda: stepped(moved=MOVED + 1),
-        ValueError,
-        r"moved\[0\] must be a held coordinate",
-    ),
-    "march that moves what is not there": (
-        lambda: stepped(moved=MOVED - 1),
-        ValueError,
-        r"moved\[0\] must be a held coordinate",
-    ),
-    "march with speeds for fewer steps": (
-        lambda: stepped(speed=THREE[1:]),
-        ValueError,
-        "speed must have 3 entries along axis 0",
-    ),
-    "march with tension for fewer steps": (
-        lambda: stepped(extra=TENSION[1:]),
-        ValueError,
-        "extra must have 3 entries along axis 0",
-    ),
-    "march to stage 2": (
-        lambda: _core.march_finish(
-            MARCHED, UNSTRETCHED, LAW, PLAN.copy(), G, H, at_rest(), 2, np.ones(2)
-        ),
-        ValueError,
-        "stage must be 0 or 1",
-    ),
-    "march by stages with stretching": (
-        lambda: _core.march_stage(
-            MARCHED, BESIDE, LAW, PLAN.copy(), G, H, at_rest(), 0, DRIVE, ONE, MOVED, ONE
-        ),
-        ValueError,
-        "stretching 0",
+        "state must be a writable array",
     ),
 }
 STRING = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0).compile(elements=2, element="rigid").chain

@@ -91,8 +91,9 @@ PyObject *py_modal_steps(PyObject *module, PyObject *arguments)
     struct rd_workspace workspace = {0};
     struct rd_modal_work work;
     PyObject *step, *laws, *coupling, *object[6], *failure = NULL, *result = NULL;
-    if (!PyArg_ParseTuple(arguments, "OOOOOOOOO", &step, &laws, &coupling, object, object + 1,
-                          object + 2, object + 3, object + 4, object + 5))
+    if (!PyArg_ParseTuple(arguments, "O!O!O!OOOOOO", &PyTuple_Type, &step, &PyTuple_Type, &laws,
+                          &PyTuple_Type, &coupling, object, object + 1, object + 2, object + 3,
+                          object + 4, object + 5))
         return NULL;
     if (parse_step(step, &call) < 0 ||
         py_laws_parse(laws, &call.kept, &call.calls, &call.system.laws) < 0 ||

@@ -94,7 +94,6 @@ class CoupledPassage(LawPassage):
     """A run with steps of one length at most."""
 
     system: CoupledSystem
-    falls = 2.0
 
     def through(self, progress: Callable[[float], object]) -> Passed:
         """Take all steps."""

@@ -30,6 +30,8 @@ from ..smooth.collocation import Oscillating
 from ..smooth.laws import SmoothLaw
 from ..smooth.system import LawSystem, OutputTimes, shifted
 
+FIRST = 512  # A run has so many steps at least.
+
 
 @dataclass(frozen=True, eq=False)
 class CoupledSystem(LawSystem):
@@ -111,9 +113,23 @@ class CoupledSystem(LawSystem):
         return slice(len(self.modes.sigma))
 
     @property
+    def is_plain(self) -> bool:
+        """Whether nothing but the tension couples modes."""
+        return not self.acting and self.coupling is None
+
+    @property
+    def falls(self) -> float:
+        """By how much half the step divides errors at least."""
+        if self.is_plain:
+            return super().falls
+        sharp = any(one.law.kind == "stop" or one.is_friction for one in self.acting)
+        return 2.0 if sharp else 4.0
+
+    @property
     def first_step(self) -> float:
         """The longest step to begin with [s]."""
-        plain = super().first_step
+        span = float(self.time[-1] - self.time[0])
+        plain = min(super().first_step, span / FIRST)
         return min(plain, 1 / (4 * self.pulsates_at)) if self.pulsates_at else plain
 
     def added(self, time: Real) -> Real:

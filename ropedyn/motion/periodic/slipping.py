@@ -67,7 +67,7 @@ def slipping(asked: SteppedSine, turn: Callable[[float], int]) -> FRF:
 # --- exact phases ---------------------------------------------------------------------------------
 
 
-class Phases:
+class PhasesGoOn:
     """One component from event to event."""
 
     def __init__(self, one: Moving, push: Sine) -> None:
@@ -99,7 +99,7 @@ def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[tuple[Compl
     def of(modes: int) -> list[Goes]:
         given = Run(run.model, run.time, run.drives, (push,), run.responses)
         look = Look(run.responses, run.time, 0)
-        return [Phases(one, push) for one in moving_components(given, [look], modes)]
+        return [PhasesGoOn(one, push) for one in moving_components(given, [look], modes)]
 
     rows, fewer = of(MODES), of(MODES // 2) if asked.model.element == "continuous" else None
     for f in asked.frequency.tolist():
@@ -113,7 +113,7 @@ def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[tuple[Compl
 # --- steps ----------------------------------------------------------------------------------------
 
 
-class Steps:
+class StepsGoOn:
     """One component in steps of all its modes."""
 
     def __init__(self, system: CoupledSystem, mine: list[int], push: Sine) -> None:
@@ -150,7 +150,7 @@ def _by_steps(
         look = OutputTimes(slice(0, len(points)), run.time, 0)
         system = CoupledSystem.coupled(given, component, points, [look])
         if len(system.push) or any(one.law.call for one in system.acting):
-            rows.append(Steps(system, mine, push))
+            rows.append(StepsGoOn(system, mine, push))
     tolerance = asked.tolerance or TOLERANCE
     for f in asked.frequency.tolist():
         before: Complex | None = None

@@ -33,8 +33,6 @@ class Passed(NamedTuple):
 class LawPassage:
     """A run with steps of one length at most."""
 
-    falls = math.inf  # Half the step divides errors by so much at least.
-
     def __init__(self, system: LawSystem, h: float) -> None:
         self.system = system
         self.all_steps = steps_between(system.time, system.breaks, h)

@@ -15,23 +15,23 @@ import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Real
-from ...base.errors import SolveError
+from ...base.errors import SceneError, SolveError
 from ...chain.compiled import Compiled
 from ...chain.port import Point, locate, moving
 from ...eigen.damped.proportional import proportional
 from ...eigen.damped.rates import Rates
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
-from ...scene.damping import having
 from ..acting import acting_laws
 from ..coupled.energy import of_chain
 from ..coupled.steps import CoupledPassage
-from ..coupled.system import CoupledSystem, moving_together, tension_of
+from ..coupled.system import CoupledSystem, moving_together, refuse_points, tension_of
 from ..history import History, ended_by
 from ..linear import solve_linear
 from ..mesh_error import against_spans
 from ..request import TOLERANCE, Run
-from ..states import without_dashpots
+from ..states import LARGEST, without_dashpots
+from ..undamped import losses_of
 from .laws import PointLaw, laws_on, why_not_smooth
 from .passage import LawPassage
 from .stretching import StretchedPassage
@@ -50,15 +50,32 @@ STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answe
 
 
 def takes(run: Run) -> bool:
-    """Whether collocation answers: the tension varies, or laws are smooth and modes uncoupled."""
+    """Whether modes are followed: the tension varies, laws are smooth, or a chain has all modes."""
     model = run.model
     if not is_constant(model):
         return True
-    if run.method != "auto" or run.coarse is not None or why_not_smooth(model):
-        return False
-    if having(model.scene.dampings, "loss") or model.chain.is_hysteretic:
+    return run.coarse is None and (_is_smooth(run) or _is_told(run))
+
+
+def _is_smooth(run: Run) -> bool:
+    """Whether laws are smooth and act on modes that nothing else couples."""
+    model = run.model
+    if why_not_smooth(model) or losses_of(model):
         return False
     return all(_is_taken(model, component) for component in model.components)
+
+
+def _is_told(run: Run) -> bool:
+    """Whether all modes of a chain tell the motion under any laws and dampers."""
+    model, chain = run.model, run.model.chain
+    if losses_of(model) or not model.separable or chain.spurious or chain.free > LARGEST:
+        return False
+    places = [*run.places, *(one.point for one in acting_laws(model))]
+    try:
+        refuse_points(model, places, run.responses)
+    except SceneError:
+        return False
+    return True
 
 
 def is_constant(model: Compiled) -> bool:
@@ -103,6 +120,7 @@ class Agreed:
     stages: int
     modes: int
     error: BaseException | None = None  # what ended it early
+    by_steps: bool = False  # whether forces are constant in steps
 
 
 def scale(value: Real) -> Real:
@@ -140,14 +158,14 @@ def agree(
             stages,
             len(system.modes.sigma),
             passed.error,
+            passage is CoupledPassage,
         )
         if passed.error is None and coarse is not None:
             size = scale(looked[0])[:, None]
             # where velocities turn or contact begins, two runs may agree by chance
-            before = apart / passage.falls if apart.size else 0.0
+            before = apart / system.falls if apart.size else 0.0
             apart = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
-            apart = np.maximum(apart, before)
-            found.step_error = TIMES * apart + rounding(looked[0], system.time)
+            found.step_error = TIMES * np.maximum(apart, before) + rounding(looked[0], system.time)
             worst = float((found.step_error / size).max(initial=0.0))
             if worst <= tolerance:
                 return found
@@ -168,10 +186,10 @@ def component_motion(
 ) -> Agreed:
     """Take more modes until those left out do not show, where there are endless many."""
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
-    if _is_coupled(run.model, component):
+    if tension_of(run.model, component) is not None or not _is_smooth(run):
         system = CoupledSystem.coupled(run, component, points, looks)
-        is_plain = not system.acting and system.coupling is None
-        return agree(system, tolerance, run, StretchedPassage if is_plain else CoupledPassage)
+        passage = StretchedPassage if system.is_plain else CoupledPassage
+        return agree(system, tolerance, run, passage)
     asked = LawQuestion(component, laws_on(run.model, component), points, looks)
     count = MODES
     while True:
@@ -194,11 +212,6 @@ def component_motion(
             )
             return found
         count *= 2
-
-
-def _is_coupled(model: Compiled, component: tuple[str, ...]) -> bool:
-    """Whether a tension that varies acts on a component, or laws do that are not smooth."""
-    return tension_of(model, component) is not None or bool(why_not_smooth(model))
 
 
 # --- the answer ---------------------------------------------------------------------------------
@@ -233,6 +246,7 @@ class _Answer:
         seen = len(run.snapshots)
         self.snapshot = np.zeros((seen, len(x), len(run.model.coordinates)))
         self.stages = self.modes = 0
+        self.method = "collocation"
         self.reached = float(run.time[-1])
         self.error: BaseException | None = None
 
@@ -255,6 +269,7 @@ class _Answer:
         if seen:
             self.snapshot[:, :, at] = found.looked[1].T.reshape(-1, len(self.x), len(component))
         self.stages, self.modes = self.stages + found.stages, self.modes + found.modes
+        self.method = "steps" if found.by_steps else self.method
         if found.error is not None and found.reached < self.reached:
             self.reached = found.reached
         self.error = self.error or found.error
@@ -292,7 +307,7 @@ class _Answer:
             value=value,
             x=self.x,
             snapshot=self.snapshot[seen],
-            cost=Cost("collocation", elements, self.modes, self.stages),
+            cost=Cost(self.method, elements, self.modes, self.stages),
             balance=partial(of_chain, asked),
             error=self.step_error[:, kept] + self.truncation[:, None],
             mesh_error=partial(against_spans, asked.kept, value, collocate),

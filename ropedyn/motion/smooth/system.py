@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -72,6 +73,11 @@ class LawSystem:
     def points(self) -> slice:
         """Outputs that are the laws' points."""
         return slice(len(self.laws))
+
+    @property
+    def falls(self) -> float:
+        """By how much half the step divides errors at least, where two runs may agree by chance."""
+        return math.inf
 
     @property
     def breaks(self) -> list[float]:
