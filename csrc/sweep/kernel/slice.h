@@ -9,7 +9,7 @@ RD_INLINE void K_(rate)(const struct rd_chain *chain, const struct sweep_block *
                         struct rate_matrix *rate)
 {
     const double *S = chain->flexibility + 9 * e, *p = chain->inertia + e * W;
-    rate->z = -1;
+    rate->z = rate->across = -1;
     rate->lever = l_fill(1.0);
     rate->hangs = chain->sag != NULL;
     rate->sag = c_zero();
@@ -20,6 +20,8 @@ RD_INLINE void K_(rate)(const struct rd_chain *chain, const struct sweep_block *
         if (chain->drag)
             rate->q[i] = c_add(rate->q[i], c_scale(c_scale_lanes(b->dashpot, b->z[i] * b->z[i]),
                                                    chain->drag[e * W + (size_t)i]));
+        if (chain->coordinate[i] == RD_Z)
+            rate->across = i;
         if (b->arm[i]) {
             rate->z = i;
             rate->lever = b->ratio[i];
@@ -43,10 +45,8 @@ static void K_(make_rate)(const struct rd_chain *chain, const struct sweep_block
     K_(rate)(chain, b, e, rate);
 }
 
-RD_INLINE void K_(slice)(const struct rate_matrix *rate, double l, int terms, cv *triple)
+RD_INLINE void K_(pack)(const cv D[W][W], const cv G[W][W], const cv Q[W][W], cv *triple)
 {
-    cv D[W][W], G[W][W], Q[W][W];
-    slice_fill(rate, l, terms, D, G, Q);
     KEEP for (int i = 0; i < W; i++)
         KEEP for (int j = 0; j < W; j++) {
             triple[i * W + j] = D[i][j];
@@ -55,6 +55,27 @@ RD_INLINE void K_(slice)(const struct rate_matrix *rate, double l, int terms, cv
             triple[FULL + at(i, j)] = G[i][j];
             triple[FULL + SYM + at(i, j)] = Q[i][j];
         }
+}
+
+static RD_CLONES void K_(slice)(const struct rate_matrix *rate, double l, int terms, cv *triple)
+{
+    cv D[W][W], G[W][W], Q[W][W];
+#if RD_WIDTH > 2
+    if (slice_is_real(rate)) {
+        lanes d[W][W], g[W][W], q[W][W];
+        r_slice_fill(rate, l, terms, d, g, q);
+        KEEP for (int i = 0; i < W; i++)
+            KEEP for (int j = 0; j < W; j++) {
+                D[i][j] = r_as_complex(d[i][j]);
+                G[i][j] = r_as_complex(g[i][j]);
+                Q[i][j] = r_as_complex(q[i][j]);
+            }
+        K_(pack)(D, G, Q, triple);
+        return;
+    }
+#endif
+    slice_fill(rate, l, terms, D, G, Q);
+    K_(pack)(D, G, Q, triple);
 }
 
 /* one of the 2^halvings parts of element e */

@@ -50,6 +50,10 @@ RD_INLINE int K_(at)(int i, int j)
 
 #include "sweep/kernel/slice.h"
 
+#if RD_WIDTH > 2
+#include "sweep/kernel/coupled.h"
+#endif
+
 #include "sweep/kernel/node.h"
 
 #include "sweep/kernel/walk.h"
@@ -74,6 +78,10 @@ const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_whole = K_(make_whole),
     .make_coefficients = K_(make_coefficients),
     .make_single = K_(make_single),
+#if RD_WIDTH > 2
+    .make_coupled = K_(make_coupled),
+    .twice = K_(twice),
+#endif
 #if RD_WIDTH == 2 || RD_WIDTH == 3
     .flatten = {K_(flatten), NAME(real_flatten, RD_WIDTH)},
     .scatter = {K_(unflatten), NAME(real_unflatten, RD_WIDTH)},
