@@ -50,10 +50,6 @@ RD_INLINE int K_(at)(int i, int j)
 
 #include "sweep/kernel/slice.h"
 
-#if RD_WIDTH > 2
-#include "sweep/kernel/coupled.h"
-#endif
-
 #include "sweep/kernel/node.h"
 
 #include "sweep/kernel/walk.h"
