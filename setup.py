@@ -40,6 +40,16 @@ COMPILE = ([] if "CFLAGS" in os.environ else QUICK) + [
     "-Wno-psabi",  # vector types never cross a function of the extension's interface
 ]
 
+WIDE = ["-mmove-max=256", "-mstore-max=256"]
+"""Lanes are copied by registers of 32 bytes: by 16 what is loaded as 32 waits for both stores."""
+
+
+def wide(compiler):
+    """Those flags where the compiler has them: gcc from 12 on, for x86."""
+    probe = [compiler, *WIDE, "-x", "c", "-fsyntax-only", "/dev/null"]
+    done = subprocess.run(probe, capture_output=True, check=False)
+    return WIDE if done.returncode == 0 else []
+
 
 def lapacke():
     """Where LAPACKE comes from: compiler and linker settings."""
@@ -76,7 +86,8 @@ class BuildExt(build_ext):
         if shutil.which(command) is None:
             sys.exit(NO_COMPILER.format(command=command))
         compile_one = self.compiler.compile
-        flags = [numpy.__version__, *self.compiler.compiler_so, *COMPILE]
+        ext.extra_compile_args = [*COMPILE, *wide(command)]
+        flags = [numpy.__version__, *self.compiler.compiler_so, *ext.extra_compile_args]
         if self.editable_mode:  # whose own folder is gone after each build
             tag = f"temp.{self.plat_name}-{sys.implementation.cache_tag}"
             self.build_temp = str(HERE / "build" / tag)

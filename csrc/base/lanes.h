@@ -92,4 +92,33 @@ RD_INLINE lanes l_select(lane_mask m, lanes a, lanes b)
     return (lanes)(((lane_mask)a & m) | ((lane_mask)b & ~m));
 }
 
+/* a > b and a >= b by halves: vectors longer than a register gcc 12 compares number by number */
+typedef double half_lanes __attribute__((vector_size(4 * RD_LANES)));
+
+RD_INLINE lane_mask l_above(lanes a, lanes b)
+{
+    half_lanes x[2], y[2];
+    lane_mask mask;
+    __builtin_memcpy(x, &a, sizeof a);
+    __builtin_memcpy(y, &b, sizeof b);
+    for (int i = 0; i < 2; i++) {
+        const __typeof__(x[i] > y[i]) half = x[i] > y[i];
+        __builtin_memcpy((char *)&mask + i * (int)sizeof half, &half, sizeof half);
+    }
+    return mask;
+}
+
+RD_INLINE lane_mask l_not_below(lanes a, lanes b)
+{
+    half_lanes x[2], y[2];
+    lane_mask mask;
+    __builtin_memcpy(x, &a, sizeof a);
+    __builtin_memcpy(y, &b, sizeof b);
+    for (int i = 0; i < 2; i++) {
+        const __typeof__(x[i] >= y[i]) half = x[i] >= y[i];
+        __builtin_memcpy((char *)&mask + i * (int)sizeof half, &half, sizeof half);
+    }
+    return mask;
+}
+
 #endif

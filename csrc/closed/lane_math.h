@@ -23,12 +23,12 @@ RD_INLINE lanes l_root(lanes x)
 
 RD_INLINE lanes l_least(lanes a, lanes b)
 {
-    return l_select(a < b, a, b);
+    return l_select(l_above(b, a), a, b);
 }
 
 RD_INLINE lanes l_most(lanes a, lanes b)
 {
-    return l_select(a > b, a, b);
+    return l_select(l_above(a, b), a, b);
 }
 
 RD_INLINE lanes l_negative_where(lane_mask m, lanes a)

@@ -53,12 +53,18 @@ RD_INLINE _Bool some(lane_mask mask)
     return (q[0][0] | q[0][1]) != 0;
 }
 
+/* whether any lane is not zero */
+RD_INLINE _Bool some_number(lanes a)
+{
+    return some((lane_mask)a << 1);
+}
+
 /* The root in the right half plane. Of real numbers alone the rest would come to the same bits. */
 RD_INLINE cv c_root(cv z)
 {
-    const lane_mask right = z.re >= 0.0;
+    const lane_mask right = l_not_below(z.re, (lanes){0});
     const lanes across = l_abs(z.re);
-    if (!some(z.im != 0.0)) {
+    if (!some_number(z.im)) {
         const lanes root = l_root(across), none = l_fill(0);
         return (cv){l_select(right, root, none), l_select(right, none, root)};
     }
@@ -66,7 +72,7 @@ RD_INLINE cv c_root(cv z)
     const lanes long_side = l_root(0.5 * (across + size));
     const lane_mask is_zero = long_side == 0.0;
     const lanes short_side = l_abs(0.5 * z.im / l_select(is_zero, l_fill(1), long_side));
-    const lane_mask down = z.im < 0.0;
+    const lane_mask down = l_above((lanes){0}, z.im);
     return (cv){l_select(right, long_side, short_side),
                 l_negative_where(down, l_select(right, short_side, long_side))};
 }
@@ -85,11 +91,12 @@ RD_INLINE struct c_circle c_circle_of(cv z)
     struct l_circle u = {.sin = l_fill(0), .cos = l_fill(1)};
     struct c_circle f = {.decay = l_fill(1)};
     lanes less = l_fill(0);
-    if (some(z.re != 0.0))
+    if (some_number(z.re))
         u = l_circle_of(z.re);
-    if (some(z.im != 0.0))
+    if (some_number(z.im))
         less = l_expm1_of_minus(2.0 * l_abs(z.im), &f.decay);
-    const lanes ch = 0.5 * (1.0 + f.decay), sh = l_negative_where(z.im < 0.0, -0.5 * less);
+    const lanes ch = 0.5 * (1.0 + f.decay),
+                sh = l_negative_where(l_above((lanes){0}, z.im), -0.5 * less);
     f.cos = (cv){u.cos * ch, -(u.sin * sh)};
     f.sin = (cv){u.sin * ch, u.cos * sh};
     f.phase = (cv){u.cos, u.sin};

@@ -121,14 +121,14 @@ RD_INLINE void slice(const struct near_end *end, double s, double l, cv *triple)
             B[i][j] = x[i][W + j];
             C[i][j] = x[W + i][j];
         }
-    slice_invert(A, inverse);
+    c_slice_invert(A, inverse);
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++) {
-            triple[j * W + i] = c_neg(slice_product(inverse, change, i, j));
+            triple[j * W + i] = c_neg(c_slice_product(inverse, change, i, j));
             if (j < i)
                 continue;
-            triple[FULL + at(i, j)] = slice_product(B, inverse, i, j);
-            triple[FULL + SYM + at(i, j)] = slice_product(inverse, C, i, j);
+            triple[FULL + at(i, j)] = c_slice_product(B, inverse, i, j);
+            triple[FULL + SYM + at(i, j)] = c_slice_product(inverse, C, i, j);
         }
 }
 
@@ -170,27 +170,27 @@ RD_INLINE void join(const cv *one, const cv *two, cv *joined)
     unpack(two, F2, G2, Q2);
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++) {
-            A[i][j] = slice_product(G1, Q2, i, j);
+            A[i][j] = c_slice_product(G1, Q2, i, j);
             A[i][j].re += (double)(i == j);
         }
-    slice_invert(A, M);
+    c_slice_invert(A, M);
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++) {
-            X[i][j] = slice_product(M, G1, i, j);
-            Y[i][j] = slice_product(Q2, M, i, j);
-            QF[i][j] = slice_product(Q2, F1, i, j);
+            X[i][j] = c_slice_product(M, G1, i, j);
+            Y[i][j] = c_slice_product(Q2, M, i, j);
+            QF[i][j] = c_slice_product(Q2, F1, i, j);
         }
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++) {
-            FX[i][j] = slice_product(F2, X, i, j);
-            YF[i][j] = slice_product(Y, F1, i, j);
+            FX[i][j] = c_slice_product(F2, X, i, j);
+            YF[i][j] = c_slice_product(Y, F1, i, j);
         }
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++) {
             cv D = c_add(one[i * W + j], two[i * W + j]);
             for (int k = 0; k < W; k++)
                 D = c_add(D, c_mul(two[i * W + k], one[k * W + j]));
-            joined[i * W + j] = c_sub(D, slice_product(FX, QF, i, j));
+            joined[i * W + j] = c_sub(D, c_slice_product(FX, QF, i, j));
             if (j < i)
                 continue;
             joined[FULL + at(i, j)] = c_add(G2[i][j], product_nt(FX, F2, i, j));

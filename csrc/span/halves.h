@@ -67,7 +67,7 @@ RD_INLINE cv c_where(lane_mask m, cv a, cv b)
    z is stepped */
 RD_INLINE cv c_over(const struct c_circle *f, cv z)
 {
-    const lane_mask small = c_size(z) < 0.5;
+    const lane_mask small = l_above(l_fill(0.5), c_size(z));
     const cv over = c_mul(f->sin, c_inverse(z));
     if (!some(small))
         return over;
@@ -114,7 +114,7 @@ RD_INLINE struct wavenumbers wavenumbers_of(cv theta, cv kappa)
 {
     const cv half = c_scale(theta, 0.5);
     const cv R = c_root(c_add(c_mul(half, half), kappa));
-    const lane_mask tensed = half.re * R.re + half.im * R.im >= 0.0;
+    const lane_mask tensed = l_not_below(half.re * R.re + half.im * R.im, (lanes){0});
     const cv large = c_where(tensed, c_add(R, half), c_sub(R, half));
     const cv small = c_mul(kappa, c_inverse(large));
     struct wavenumbers w = {.q = kappa, .E = c_scale(R, 2)};

@@ -45,7 +45,7 @@ RD_INLINE struct wavenumbers bent_wavenumbers(cv soft, const cv *load, lanes r)
 
 RD_INLINE lane_mask is_brief(const struct wavenumbers *w, lanes length)
 {
-    return ~(c_size(w->E) * (length * length) > (double)BENT_BRIEF);
+    return ~l_above(c_size(w->E) * (length * length), l_fill((double)BENT_BRIEF));
 }
 
 /* The flexibility, transfer and stiffness of a piece of a plain span in units of the rate matrix: with z = r l phi,

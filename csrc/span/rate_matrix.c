@@ -12,7 +12,8 @@ void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension
     const double *S = chain->flexibility + e * RD_CHANNELS * RD_CHANNELS;
     const bool bends = chain->coordinate[w - 1] == RD_BETA;
     const cv soft = c_inverse(section);
-    *rate = (struct rate_matrix){.z = -1, .lever = l_fill(1), .hangs = chain->sag != NULL};
+    *rate = (struct rate_matrix){.z = -1, .across = -1, .lever = l_fill(1)};
+    rate->hangs = chain->sag != NULL;
     rate->sag = c_real(rate->hangs ? chain->sag[e] : 0);
     for (size_t i = 0; i < w; i++) {
         const size_t c = (size_t)rd_channel_of(chain->coordinate[i]);
@@ -21,6 +22,7 @@ void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension
         if (chain->drag)
             rate->q[i] = c_add(rate->q[i], c_scale(dashpot, chain->drag[e * w + i]));
         rate->z = is_z && bends ? (int)i : rate->z;
+        rate->across = is_z ? (int)i : rate->across;
         for (size_t j = 0; j < w; j++) {
             const size_t d = (size_t)rd_channel_of(chain->coordinate[j]);
             if (is_z || chain->coordinate[j] == RD_Z)

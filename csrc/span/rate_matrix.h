@@ -19,6 +19,7 @@ struct rate_matrix {
     cv q[RD_WIDTH_MAX];
     lanes lever; /* Phi_z,beta */
     int z;       /* index of z where it bends, beta being the last; else -1 */
+    int across;  /* index of z, -1 where there is none */
     cv sag;      /* Phi_x,z */
     _Bool hangs; /* it is there; x and z are the first two coordinates */
 };

@@ -6,9 +6,33 @@
 #ifndef RD_SLICE_H
 #define RD_SLICE_H
 
+#include "closed/lane_trig.h"
 #include "span/beam_slice.h"
 #include "span/rate_matrix.h"
 #include "span/span.h"
+
+/* terms more of a rope that hangs: z follows from F_z by three integrals, x from h by two more */
+enum { SLICE_HANGING = 2 };
+
+#undef RD_REAL
+#define RD_REAL 1
+#include "span/parity.h"
+#undef RD_REAL
+#define RD_REAL 0
+#include "span/parity.h"
+
+/* whether nothing is damped */
+RD_INLINE _Bool slice_is_real(const struct rate_matrix *s)
+{
+    lanes im = s->hangs ? l_abs(s->sag.im) : (lanes){0};
+    for (int i = 0; i < W; i++) {
+        im += l_abs(s->q[i].im);
+        for (int j = 0; j < W; j++)
+            if (s->elastic[i][j])
+                im += l_abs(s->S[i][j].im);
+    }
+    return !some(im != 0.0);
+}
 
 /* (u, f) <- (Phi u + S' f, q u - Phi^T f) h */
 RD_INLINE void slice_differentiate(const struct rate_matrix *s, double h, cv *u, cv *f)
@@ -54,39 +78,6 @@ RD_INLINE void slice_column(const struct rate_matrix *s, double l, int terms, in
     }
 }
 
-/* X <- A^-1 by Gauss and Jordan, A destroyed: near a unit triangle nothing is to be exchanged */
-RD_INLINE void slice_invert(cv A[W][W], cv X[W][W])
-{
-    for (int i = 0; i < W; i++)
-        for (int j = 0; j < W; j++)
-            X[i][j] = c_real(i == j);
-    for (int k = 0; k < W; k++) {
-        const cv pivot = c_inverse(A[k][k]);
-        for (int j = 0; j < W; j++) {
-            A[k][j] = c_mul(A[k][j], pivot);
-            X[k][j] = c_mul(X[k][j], pivot);
-        }
-        for (int i = 0; i < W; i++) {
-            if (i == k)
-                continue;
-            const cv a = A[i][k];
-            for (int j = 0; j < W; j++) {
-                A[i][j] = c_sub(A[i][j], c_mul(a, A[k][j]));
-                X[i][j] = c_sub(X[i][j], c_mul(a, X[k][j]));
-            }
-        }
-    }
-}
-
-/* (i, j) of A B */
-RD_INLINE cv slice_product(const cv A[W][W], const cv B[W][W], int i, int j)
-{
-    cv sum = c_mul(A[i][0], B[0][j]);
-    for (int k = 1; k < W; k++)
-        sum = c_add(sum, c_mul(A[i][k], B[k][j]));
-    return sum;
-}
-
 /* bending alone, from span/beam_slice.h: with lever r of z' = r beta, S' and q as they are scaled,
    z = r l phi, F = f/(r^2 S' l^3) and so on */
 RD_INLINE void slice_bend(const struct rate_matrix *s, double l, int terms, cv D[W][W], cv G[W][W],
@@ -113,9 +104,6 @@ RD_INLINE void slice_bend(const struct rate_matrix *s, double l, int terms, cv D
     Q[B][B] = c_mul(stiff, b.Qbb);
 }
 
-/* z follows from F_z by three integrals, x from h by two more */
-enum { SLICE_HANGING = 2 };
-
 /* D = F - I, G, Q of a piece of length l, any couplings */
 RD_INLINE void slice_sum(const struct rate_matrix *s, double l, int terms, cv D[W][W], cv G[W][W],
                          cv Q[W][W])
@@ -133,21 +121,23 @@ RD_INLINE void slice_sum(const struct rate_matrix *s, double l, int terms, cv D[
         for (int i = 0; i < W; i++)
             C[i][c] = f[i];
     }
-    slice_invert(A, inverse);
+    c_slice_invert(A, inverse);
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++) {
-            D[j][i] = c_neg(slice_product(inverse, change, i, j));
+            D[j][i] = c_neg(c_slice_product(inverse, change, i, j));
             if (j > i)
                 continue;
-            G[i][j] = G[j][i] = slice_product(B, inverse, i, j);
-            Q[i][j] = Q[j][i] = slice_product(inverse, C, i, j);
+            G[i][j] = G[j][i] = c_slice_product(B, inverse, i, j);
+            Q[i][j] = Q[j][i] = c_slice_product(inverse, C, i, j);
         }
 }
 
 RD_INLINE void slice_fill(const struct rate_matrix *s, double l, int terms, cv D[W][W], cv G[W][W],
                           cv Q[W][W])
 {
-    if (W == 2 && s->z >= 0)
+    if (W > 2)
+        c_slice_fill(s, l, terms, D, G, Q);
+    else if (W == 2 && s->z >= 0)
         slice_bend(s, l, terms / 2 - 1, D, G, Q);
     else
         slice_sum(s, l, terms, D, G, Q);

@@ -74,18 +74,19 @@ static int turns(const struct sweep *s, int32_t term)
     return any;
 }
 
-/* pieces of 1, 2, 4, .. first pieces of a run, joined by doubling; those that it is crossed by are
-   the largest and the binary digits of the rest */
+/* pieces of 1, 2, 4, .. first pieces of a run, joined by doubling, those that may resonate as
+   coefficients; those that it is crossed by are the largest and the binary digits of the rest */
 static void make_table(struct sweep *s, const struct rd_run *run, int way,
                        const struct sweep_pieces *pieces)
 {
-    const size_t levels = pieces->level + 1, rest = pieces->count & (((size_t)1 << levels) - 1);
+    const size_t levels = pieces->level + pieces->doublings + 1,
+                 rest = pieces->count & (((size_t)1 << levels) - 1);
     struct sweep_table *table = &s->tabled;
     way = turns(s, run->term) ? way : 0;
     if (table->levels == levels && table->element == run->element && table->term == run->term &&
         table->way == way && table->rest == rest && table->flat == s->state.flat)
         return;
-    s->whole.count = 0;
+    s->whole.count = s->coupled.count = 0;
     cv *one = s->triple, *two = s->triple + s->coefs;
     const size_t e = (size_t)run->element;
     if (s->chain->inertia)
@@ -93,20 +94,23 @@ static void make_table(struct sweep *s, const struct rd_run *run, int way,
                               rd_span_terms(pieces->radians), one);
     else
         s->kernel->make_element(s->chain, &s->block, e, one);
-    for (size_t k = 0; k < levels; k++) {
-        if (k + 1 == levels || rest >> k & 1) {
+    for (size_t k = 0; k <= pieces->level; k++) {
+        if (k == pieces->level || rest >> k & 1) {
             cv *kept = s->table + k * s->coefs;
             if (s->state.flat)
                 memcpy(kept, one, s->coefs * sizeof *one);
             else
                 s->kernel->make_coefficients(one, kept);
         }
-        if (k + 1 < levels)
+        if (k < pieces->level)
             s->kernel->join[s->undamped](s->chain, &s->way[way], run->term, one, one, two);
         cv *swap = one;
         one = two;
         two = swap;
     }
+    for (size_t k = pieces->level + 1; k < levels; k++)
+        s->kernel->twice(s->chain, &s->way[way], run->term, s->table + (k - 1) * s->coefs,
+                         s->table + k * s->coefs);
     *table = (struct sweep_table){levels, rest, run->element, run->term, way, s->state.flat};
 }
 
@@ -142,6 +146,15 @@ static void first_piece(struct sweep *s, int way, const cv *piece, size_t node)
 {
     cross_node(s, way, node);
     walk_pieces(s, way, piece, RD_NO_TERM, 1);
+}
+
+/* binary digits of a number */
+static size_t levels_of(size_t count)
+{
+    size_t levels = 0;
+    while (count >> levels > 0)
+        levels++;
+    return levels;
 }
 
 static void cross_each(struct sweep *s, int way, size_t node, size_t count)
@@ -211,12 +224,50 @@ static void cross_plain(struct sweep *s, int32_t element, int way, size_t node, 
                               &whole->radians);
         whole->element = element;
         whole->count = count;
-        s->tabled.levels = 0;
+        s->tabled.levels = s->coupled.count = 0;
     }
     first_piece(s, way, s->table, node);
     open_behind(s, way, way ? node - count : node + count);
     s->steps += (1.0 + whole->radians) * (1.0 + whole->radians);
     s->radians = l_most(whole->radians, s->radians);
+}
+
+/* 1, 2, 4, .. elements of a run of spans of three coordinates and more */
+static void make_coupled(struct sweep *s, const struct rd_run *run, size_t count)
+{
+    const size_t e = (size_t)run->element;
+    const struct sweep_pieces all =
+        rd_sweep_pieces(s->chain, run, count, rd_sweep_waves(s->chain, run, s->extent));
+    /* terms for the shortest waves: more than a lane needs change none of its bits */
+    const struct sweep_waves shortest = rd_sweep_waves(s->chain, run, &s->most);
+    const int level = (int)all.level, joins = level < all.halvings ? level : all.halvings;
+    const struct sweep_cut cut = {
+        .joins = joins,
+        .doublings = all.halvings - joins,
+        .terms = rd_span_terms(ldexp(s->chain->length[e] * shortest.all, -all.halvings)),
+    };
+    s->kernel->make_coupled(s->chain, &s->block, e, &cut, s->table, &s->coupled.steps);
+    for (size_t k = 1; k < levels_of(count); k++)
+        s->kernel->twice(s->chain, s->way, RD_NO_TERM, s->table + (k - 1) * s->coefs,
+                         s->table + k * s->coefs);
+    s->coupled.element = run->element;
+    s->coupled.count = count;
+    s->whole.count = s->tabled.levels = 0;
+}
+
+/* Across count elements of such a run by the binary digits of count, the largest first. */
+static void cross_coupled(struct sweep *s, const struct rd_run *run, int way, size_t node,
+                          size_t count)
+{
+    scatter(s);
+    if (s->coupled.element != run->element || s->coupled.count != count)
+        make_coupled(s, run, count);
+    cross_node(s, way, node);
+    for (size_t k = levels_of(count); k-- > 0;)
+        if (count >> k & 1)
+            walk_pieces(s, way, s->table + k * s->coefs, RD_NO_TERM, 1);
+    open_behind(s, way, way ? node - count : node + count);
+    s->steps += s->coupled.steps * ((double)count * (double)count);
 }
 
 /* Across an element whose tension grows, by the pieces of its blocks, which are others the other way. */
@@ -235,7 +286,7 @@ static void cross_graded(struct sweep *s, size_t e, int way, size_t node)
     const size_t blocks = rd_blocks_of(s->chain, e, &sizes, way, block);
     scatter(s);
     s->kernel->make_rate(s->chain, &s->block, e, &rate);
-    s->tabled.levels = s->whole.count = 0;
+    s->tabled.levels = s->whole.count = s->coupled.count = 0;
     for (size_t k = 0; k < blocks; k++) {
         rd_family_fill(&field, block + k, &family);
         for (size_t i = 0; i < block[k].pieces; i++) {
@@ -262,6 +313,10 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
         cross_graded(s, (size_t)run->element, way, node);
         return;
     }
+    if (s->chain->inertia && s->kernel->make_coupled) {
+        cross_coupled(s, run, way, node, count);
+        return;
+    }
     if (!s->chain->inertia && count < JOINED_LEAST && goes_flat(s)) {
         cross_each(s, way, node, count);
         return;
@@ -283,10 +338,12 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
         scatter(s);
     make_table(s, run, way, &all);
     int begun = 0;
-    for (size_t left = all.count, top = all.level; left > 0; top--) {
+    for (size_t left = all.count, top = all.level + all.doublings; left > 0; top--) {
         size_t pieces = left >> top;
         left -= pieces << top;
-        s->steps += (double)pieces * (double)pieces;
+        /* a piece that was doubled turned as far as what it is made of would have, one by one */
+        const double turned = ldexp((double)pieces, top > all.level ? (int)(top - all.level) : 0);
+        s->steps += turned * turned;
         if (pieces == 0)
             continue;
         const cv *piece = s->table + top * s->coefs;

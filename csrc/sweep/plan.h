@@ -23,7 +23,14 @@ struct sweep_whole {
     lanes radians;
 };
 
-/* the same of real minors */
+/* the coupled span in the first place of the table, and 2, 4, .. of them in the next */
+struct sweep_coupled {
+    size_t count;
+    int32_t element;
+    lanes steps; /* of one */
+};
+
+/* the plain span of real minors */
 struct sweep_compound {
     size_t count;
     int32_t element;
@@ -64,6 +71,7 @@ struct sweep {
     struct sweep_table tabled;
     struct sweep_whole whole;
     struct sweep_compound compound;
+    struct sweep_coupled coupled;
     struct sweep_made made;
     struct sweep_block block;
     struct sweep_way way[2];

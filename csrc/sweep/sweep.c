@@ -41,7 +41,7 @@ static enum rd_status begin_block(struct sweep *s, const struct rd_factors *fact
             s->used = lane;
     s->most = rd_sweep_most(s->extent, s->used);
     s->tabled.levels = 0;
-    s->whole.count = s->compound.count = 0;
+    s->whole.count = s->compound.count = s->coupled.count = 0;
     s->made = (struct sweep_made){0};
     s->steps = l_fill(1.0);
     s->radians = l_fill(0.0);

@@ -67,6 +67,10 @@ RD_INLINE void slice_load(const struct rd_walk *walk, const struct rd_leg *leg, 
     rd_rate_fill(chain, e, c_real(1), c_real(1), inertia, c_zero(), &rate);
     cv D[W][W], G[W][W], Q[W][W];
     const int terms = rd_span_terms(part * rd_walk_radians(walk, leg, largest(lambda)));
+    if (W > 2 && !change) {
+        r_slice_fill(&rate, part * chain->length[e], terms, piece->D, piece->G, piece->Q);
+        return;
+    }
     slice_fill(&rate, part * chain->length[e], terms, D, G, Q);
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++) {

@@ -143,6 +143,11 @@ RD_INLINE void sweep_accompany(const cv *E, int width, cv *companion)
     sweep_disturb(sweep_most(E, width), width, companion);
 }
 
+/* a span by 2^(joins + doublings) parts: joined below their first cantilever resonance, then doubled */
+struct sweep_cut {
+    int joins, doublings, terms; /* terms: of the series of a part */
+};
+
 struct sweep_kernel {
     void (*make_element)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *triple);
     void (*make_slice)(const struct rd_chain *, const struct sweep_block *, size_t e, int halvings,
@@ -153,7 +158,12 @@ struct sweep_kernel {
                       cv *triple);
     void (*make_whole)(const struct rd_chain *, const struct sweep_block *, size_t e, double length,
                        cv *coef, lanes *radians);
+    void (*make_coupled)(const struct rd_chain *, const struct sweep_block *, size_t e,
+                         const struct sweep_cut *, cv *coef, lanes *steps);
     void (*make_coefficients)(const cv *triple, cv *coef);
+    /* those of two equal pieces with a node term (negative: none) between them */
+    void (*twice)(const struct rd_chain *, const struct sweep_way *, int32_t term, const cv *half,
+                  cv *whole);
     void (*make_single)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *coef);
     /* these of complex numbers, and of real ones where nothing is damped; minors from U and U from
        minors, and a walk by them */

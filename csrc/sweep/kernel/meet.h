@@ -47,23 +47,23 @@ RD_INLINE void K_(couple)(const struct sweep_walk *s, const cv *UL, const cv *AL
                           const lanes *AR, struct K_(meeting) *m)
 {
     cv prod[FULL], adj[FULL], *H = m->H;
-    KEEP for (int i = 0; i < W; i++)
-        KEEP for (int j = i; j < W; j++)
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = i; j < W; j++)
             m->UR[at(i, j)] = c_scale(right[at(i, j)], s->way->sign[i] * s->way->sign[j]);
     const cv *UR = m->UR;
     K_(sym_times_sym)(UR, UL, prod);
-    KEEP for (int i = 0; i < W; i++)
-        KEEP for (int j = 0; j < W; j++) {
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = 0; j < W; j++) {
             const cv sum = c_add(UL[at(i, j)], UR[at(i, j)]);
             H[i * W + j] = c_sub(sum, c_scale(prod[i * W + j], 2.0));
             lanes size = c_size(UL[at(i, j)]) + c_size(UR[at(i, j)]);
             size += AL[at(i, j)].re + AR[at(i, j)];
-            KEEP for (int k = 0; k < W; k++)
+            UNROLL for (int k = 0; k < W; k++)
                 size += 2.0 * c_size(UR[at(i, k)]) * c_size(UL[at(k, j)]);
             m->size[i * W + j] = size;
         }
     const cv d = c_inverse(K_(adjugate)(H, adj));
-    KEEP for (int i = 0; i < FULL; i++)
+    UNROLL for (int i = 0; i < FULL; i++)
         m->isize[i] = c_size(c_mul(adj[i], d));
 }
 
@@ -72,7 +72,7 @@ RD_INLINE void K_(pivot)(cv *M, int i, int k)
 {
     cv *a = M + i * (W + 1), *b = M + k * (W + 1);
     const lane_mask larger = c_size(a[k]) > c_size(b[k]);
-    KEEP for (int j = k; j <= W; j++) {
+    UNROLL for (int j = k; j <= W; j++) {
         const cv up = a[j], down = b[j];
         a[j] = (cv){l_select(larger, down.re, up.re), l_select(larger, down.im, up.im)};
         b[j] = (cv){l_select(larger, up.re, down.re), l_select(larger, up.im, down.im)};
@@ -84,24 +84,24 @@ RD_INLINE void K_(pivot)(cv *M, int i, int k)
 RD_INLINE void K_(solve)(const cv *H, int turned, const cv *r, cv *x)
 {
     cv M[W * (W + 1)];
-    KEEP for (int i = 0; i < W; i++) {
-        KEEP for (int j = 0; j < W; j++)
+    UNROLL for (int i = 0; i < W; i++) {
+        UNROLL for (int j = 0; j < W; j++)
             M[i * (W + 1) + j] = turned ? H[j * W + i] : H[i * W + j];
         M[i * (W + 1) + W] = r[i];
     }
-    KEEP for (int k = 0; k < W; k++) {
-        KEEP for (int i = k + 1; i < W; i++)
+    UNROLL for (int k = 0; k < W; k++) {
+        UNROLL for (int i = k + 1; i < W; i++)
             K_(pivot)(M, i, k);
         const cv *row = M + k * (W + 1), per = c_inverse(row[k]);
-        KEEP for (int i = k + 1; i < W; i++) {
+        UNROLL for (int i = k + 1; i < W; i++) {
             const cv share = c_mul(M[i * (W + 1) + k], per);
-            KEEP for (int j = k + 1; j <= W; j++)
+            UNROLL for (int j = k + 1; j <= W; j++)
                 M[i * (W + 1) + j] = c_sub(M[i * (W + 1) + j], c_mul(share, row[j]));
         }
     }
-    KEEP for (int i = W - 1; i >= 0; i--) {
+    UNROLL for (int i = W - 1; i >= 0; i--) {
         cv rest = M[i * (W + 1) + W];
-        KEEP for (int j = i + 1; j < W; j++)
+        UNROLL for (int j = i + 1; j < W; j++)
             rest = c_sub(rest, c_mul(M[i * (W + 1) + j], x[j]));
         x[i] = c_mul(rest, c_inverse(M[i * (W + 1) + i]));
     }
@@ -111,9 +111,9 @@ RD_INLINE void K_(solve)(const cv *H, int turned, const cv *r, cv *x)
 RD_INLINE lanes K_(singular)(const struct K_(meeting) *m)
 {
     lanes big = {0};
-    KEEP for (int i = 0; i < W; i++) {
+    UNROLL for (int i = 0; i < W; i++) {
         lanes sum = {0};
-        KEEP for (int k = 0; k < W; k++)
+        UNROLL for (int k = 0; k < W; k++)
             sum += m->isize[i * W + k] * m->size[k * W + i];
         big = l_select(sum <= big, big, sum);
     }
@@ -126,12 +126,12 @@ RD_INLINE void K_(load)(const struct sweep_walk *s, const double *motion, const 
 {
     cv rL[W], rR[W];
     lanes sL[W], sR[W];
-    KEEP for (int i = 0; i < W; i++) {
+    UNROLL for (int i = 0; i < W; i++) {
         const lanes gi = (force ? force[i] : 0.0) / s->block->z[i];
         rL[i] = (cv){-gi, (lanes){0}};
         rR[i] = (cv){gi, (lanes){0}};
         sL[i] = sR[i] = l_abs(gi);
-        KEEP for (int k = 0; k < W; k++) {
+        UNROLL for (int k = 0; k < W; k++) {
             const lanes z = s->block->z[k];
             const lanes p = z * (motion ? motion[k] : 0.0), g = (force ? force[k] : 0.0) / z;
             rL[i] = c_add(rL[i], c_mul(m->UR[at(i, k)], (cv){g, -p}));
@@ -142,15 +142,15 @@ RD_INLINE void K_(load)(const struct sweep_walk *s, const double *motion, const 
     }
     K_(solve)(m->H, 0, rL, m->bL);
     K_(solve)(m->H, 1, rR, m->bR);
-    KEEP for (int i = 0; i < W; i++)
-        KEEP for (int k = 0; k < W; k++) {
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int k = 0; k < W; k++) {
             sL[i] += m->size[i * W + k] * c_size(m->bL[k]);
             sR[i] += m->size[k * W + i] * c_size(m->bR[k]);
         }
-    KEEP for (int i = 0; i < W; i++) {
+    UNROLL for (int i = 0; i < W; i++) {
         m->cL[i] = c_size(m->bL[i]);
         m->cR[i] = c_size(m->bR[i]);
-        KEEP for (int k = 0; k < W; k++) {
+        UNROLL for (int k = 0; k < W; k++) {
             m->cL[i] += m->isize[i * W + k] * sL[k];
             m->cR[i] += m->isize[k * W + i] * sR[k];
         }
@@ -175,7 +175,7 @@ static RD_CLONES void K_(meet)(const struct sweep_walk *s, const double *motion,
         const cv *left_row = EL + 2 * r * W, *right_row = ER + 2 * r * W;
         cv sum = c_zero(), apart = c_zero();
         lanes size = {0};
-        KEEP for (int i = 0; i < W; i++) {
+        UNROLL for (int i = 0; i < W; i++) {
             const double d = s->way->sign[i];
             const cv l = left_row[i], e = c_scale(right_row[i], d);
             sum = c_add(sum, c_add(c_mul(l, m.bL[i]), c_mul(e, m.bR[i])));

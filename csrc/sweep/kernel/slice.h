@@ -2,6 +2,7 @@
    Included by sweep/kernel/width.h, once per width. */
 #include "span/plain.h"
 #include "span/slice.h"
+#include "span/three_waves.h"
 
 /* q_i = (inertia p_i + dashpot drag_i) z_i^2, + T z_beta^2 for beta; S'_ij = S_ij/(section z_i z_j);
    Phi_ij z_j/z_i */
@@ -9,7 +10,7 @@ RD_INLINE void K_(rate)(const struct rd_chain *chain, const struct sweep_block *
                         struct rate_matrix *rate)
 {
     const double *S = chain->flexibility + 9 * e, *p = chain->inertia + e * W;
-    rate->z = -1;
+    rate->z = rate->across = -1;
     rate->lever = l_fill(1.0);
     rate->hangs = chain->sag != NULL;
     rate->sag = c_zero();
@@ -20,6 +21,8 @@ RD_INLINE void K_(rate)(const struct rd_chain *chain, const struct sweep_block *
         if (chain->drag)
             rate->q[i] = c_add(rate->q[i], c_scale(c_scale_lanes(b->dashpot, b->z[i] * b->z[i]),
                                                    chain->drag[e * W + (size_t)i]));
+        if (chain->coordinate[i] == RD_Z)
+            rate->across = i;
         if (b->arm[i]) {
             rate->z = i;
             rate->lever = b->ratio[i];
@@ -43,10 +46,8 @@ static void K_(make_rate)(const struct rd_chain *chain, const struct sweep_block
     K_(rate)(chain, b, e, rate);
 }
 
-RD_INLINE void K_(slice)(const struct rate_matrix *rate, double l, int terms, cv *triple)
+RD_INLINE void K_(pack)(const cv D[W][W], const cv G[W][W], const cv Q[W][W], cv *triple)
 {
-    cv D[W][W], G[W][W], Q[W][W];
-    slice_fill(rate, l, terms, D, G, Q);
     KEEP for (int i = 0; i < W; i++)
         KEEP for (int j = 0; j < W; j++) {
             triple[i * W + j] = D[i][j];
@@ -55,6 +56,27 @@ RD_INLINE void K_(slice)(const struct rate_matrix *rate, double l, int terms, cv
             triple[FULL + at(i, j)] = G[i][j];
             triple[FULL + SYM + at(i, j)] = Q[i][j];
         }
+}
+
+static RD_CLONES void K_(slice)(const struct rate_matrix *rate, double l, int terms, cv *triple)
+{
+    cv D[W][W], G[W][W], Q[W][W];
+#if RD_WIDTH > 2
+    if (slice_is_real(rate)) {
+        lanes d[W][W], g[W][W], q[W][W];
+        r_slice_fill(rate, l, terms, d, g, q);
+        KEEP for (int i = 0; i < W; i++)
+            KEEP for (int j = 0; j < W; j++) {
+                D[i][j] = r_as_complex(d[i][j]);
+                G[i][j] = r_as_complex(g[i][j]);
+                Q[i][j] = r_as_complex(q[i][j]);
+            }
+        K_(pack)(D, G, Q, triple);
+        return;
+    }
+#endif
+    slice_fill(rate, l, terms, D, G, Q);
+    K_(pack)(D, G, Q, triple);
 }
 
 /* one of the 2^halvings parts of element e */
@@ -145,3 +167,65 @@ static RD_CLONES void K_(make_whole)(const struct rd_chain *chain, const struct 
         *radians = l_most(*radians, span.radians);
     }
 }
+
+#if RD_WIDTH > 2
+
+/* The coefficients of a whole span whose coordinates are coupled: of three in closed form where that is
+   known, else of parts, joined and doubled. */
+
+/* of 2^(joins + doublings) parts that its wave bound and its waves ask for */
+static RD_CLONES void K_(span_by_parts)(const struct rate_matrix *rate, double l,
+                                        const struct sweep_cut *cut, cv *coef)
+{
+    enum { SIZE = FULL + 2 * SYM };
+    cv one[SIZE], two[SIZE];
+    const int all = cut->joins + cut->doublings, undamped = slice_is_real(rate);
+    K_(slice)(rate, ldexp(l, -all), cut->terms, one);
+    for (int k = 0; k < cut->joins; k++) {
+    KEEP for (int i = 0; i < SIZE; i++)
+            two[i] = one[i];
+        if (undamped)
+            NAME(real_join, RD_WIDTH)(NULL, NULL, RD_NO_TERM, two, two, one);
+        else
+            K_(join)(NULL, NULL, RD_NO_TERM, two, two, one);
+    }
+    K_(coefficients)(one, coef, 0);
+    for (int k = 0; k < cut->doublings; k++) {
+        KEEP for (int i = 0; i < SIZE; i++)
+            one[i] = coef[i];
+        K_(twice)(NULL, NULL, RD_NO_TERM, one, coef);
+    }
+}
+
+/* of element e; steps: as many as its rounding counts for */
+static void K_(make_coupled)(const struct rd_chain *chain, const struct sweep_block *b, size_t e,
+                             const struct sweep_cut *cut, cv *coef, lanes *steps)
+{
+    struct rate_matrix rate;
+    const double length = chain->length[e], turned = ldexp(1.0, cut->doublings);
+    K_(make_rate)(chain, b, e, &rate);
+    *steps = l_fill(turned * turned);
+#if RD_WIDTH == 3
+    if (rate.z >= 0) {
+        const lanes all = l_fill(length);
+        struct three_span span;
+        rd_three_span(&rate, &all, &span);
+        const lane_mask missing = ~span.found;
+        if (some(missing))
+            K_(span_by_parts)(&rate, length, cut, coef);
+        cv *A = coef, *B = A + SYM, *C = B + FULL;
+        for (int i = 0; i < SYM; i++) {
+            A[i] = c_where(span.found, span.A[i], A[i]);
+            C[i] = c_where(span.found, span.C[i], C[i]);
+        }
+        for (int i = 0; i < FULL; i++)
+            B[i] = c_where(span.found, span.B[i], B[i]);
+        const lanes radians = 1.0 + span.radians;
+        *steps = l_select(span.found, radians * radians, *steps);
+        return;
+    }
+#endif
+    K_(span_by_parts)(&rate, length, cut, coef);
+}
+
+#endif

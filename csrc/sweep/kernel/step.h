@@ -111,3 +111,58 @@ RD_INLINE void K_(step)(const cv *coef, const cv *N, cv *U, cv *E, size_t rows)
             U[at(i, j)] = (cv){A[at(i, j)].re + sum.im, A[at(i, j)].im - sum.re};
         }
 }
+
+#if RD_WIDTH > 2
+
+/* Two equal pieces and the node term t (negative: none) between them, as coefficients, W <- W + N,
+   R = (W A + i I)^-1:
+
+       A - i B A R B^T,  B R^T B,  W - i B^T R W B
+
+   the first as of a step: no frequency is without it. */
+static RD_CLONES void K_(twice)(const struct rd_chain *chain, const struct sweep_way *way, int32_t t,
+                                const cv *half, cv *whole)
+{
+    const cv *A = half, *B = half + SYM, *C = B + FULL;
+    cv w[SYM], N[SYM], R[FULL], BX[FULL], X[SYM], Z[SYM], ZB[FULL], BR[FULL];
+    KEEP for (int i = 0; i < SYM; i++)
+        N[i] = c_zero();
+    if (t >= 0)
+        K_(node_term)(chain, way, (size_t)t, N);
+    KEEP for (int i = 0; i < SYM; i++)
+        w[i] = c_add(C[i], N[i]);
+    const cv s = K_(resolve)(w, A, R);
+    UNROLL for (int i = 0; i < FULL; i++)
+        R[i] = c_mul(R[i], s);
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = i; j < W; j++) {
+            cv x = c_mul(A[at(i, 0)], R[j]), z = c_mul(R[i * W], w[at(0, j)]);
+            UNROLL for (int k = 1; k < W; k++) {
+                x = c_add(x, c_mul(A[at(i, k)], R[k * W + j]));
+                z = c_add(z, c_mul(R[i * W + k], w[at(k, j)]));
+            }
+            X[at(i, j)] = x;
+            Z[at(i, j)] = z;
+        }
+    K_(times_sym)(B, X, BX);
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = 0; j < W; j++) {
+            cv sum = c_mul(Z[at(i, 0)], B[j]);
+            UNROLL for (int k = 1; k < W; k++)
+                sum = c_add(sum, c_mul(Z[at(i, k)], B[k * W + j]));
+            ZB[i * W + j] = sum;
+            BR[i * W + j] = K_(dot_nt)(B, R, i, j);
+        }
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = 0; j < W; j++) {
+            whole[SYM + i * W + j] = K_(dot_nn)(BR, B, i, j);
+            if (j < i)
+                continue;
+            const cv a = K_(dot_nt)(BX, B, i, j), c = K_(dot_tn)(B, ZB, i, j);
+            const int p = at(i, j);
+            whole[p] = (cv){A[p].re + a.im, A[p].im - a.re};
+            whole[SYM + FULL + p] = (cv){C[p].re + c.im, C[p].im - c.re};
+        }
+}
+
+#endif

@@ -74,6 +74,10 @@ const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_whole = K_(make_whole),
     .make_coefficients = K_(make_coefficients),
     .make_single = K_(make_single),
+#if RD_WIDTH > 2
+    .make_coupled = K_(make_coupled),
+    .twice = K_(twice),
+#endif
 #if RD_WIDTH == 2 || RD_WIDTH == 3
     .flatten = {K_(flatten), NAME(real_flatten, RD_WIDTH)},
     .scatter = {K_(unflatten), NAME(real_unflatten, RD_WIDTH)},
