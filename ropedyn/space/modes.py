@@ -23,7 +23,7 @@ from ..eigen.vectors import largest, within
 from ..scene import damping
 from ..scene.scene import Scene
 from .assembly import MOST_PARTS, Assembly, assemble
-from .compile import axis_of, finer_rope
+from .compile import axis_of, finer_rope, method_of
 from .rope import SIX, SpaceRope, unforced
 from .spectrum import (
     AT_ONCE,
@@ -61,13 +61,13 @@ def solve_modes(
     return Modes(
         coordinates=rope.coordinates,
         certified=True,
-        x=within(rope.x, shapes.points),
+        x=within(rope.x, shapes.points) / rope.longer,
         frequency=frequency,
         eigenvalue=value,
         growth=np.sqrt(np.maximum(-value, 0.0)),
         rounding_error=error_in_hertz(value, found.error),
         plane=Late(lambda: shapes.plane),
-        cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=found.counts),
+        cost=Cost(method_of(scene), len(rope.length), rope.unknowns, sweeps=found.counts),
         vectors=Late(partial(vectors_of, shapes)),
         mesh=partial(_mesh, scene, rope, value, frequency),
         hanging=partial(OnCatenary, np.zeros_like(frequency), frequency),
@@ -90,9 +90,7 @@ def _mesh(scene: Scene, rope: SpaceRope, eigenvalue: Real, frequency: Real) -> U
 
 def refuse_derivatives(points: int | None = None) -> Any:
     """Refuse what needs derivatives of the core."""
-    raise SceneError(
-        "derivatives and damage are not carried for a rope on an axis: the rope must be straight"
-    )
+    raise SceneError("derivatives and damage are not carried for a rope on an axis or its catenary")
 
 
 def check_points(rope: SpaceRope, points: int | None) -> None:
@@ -245,7 +243,12 @@ class SpaceShapes:
 
     @property
     def plane(self) -> Any:
-        """In which each mode moves across."""
+        """In which each mode moves across: on a plane curve what its component moves in."""
+        rope = self.rope
+        if len(rope.own[0]) < len(SIX) and rope.bend[:, :, 0, 2].all():
+            return np.array(["z" if SIX.index("z") in own else "y" for own in rope.own])[
+                self.component
+            ]
         shares = self.kinetic / self.kinetic.sum(axis=1, keepdims=True)
         y = shares[:, [1, 5]].sum(axis=1) > SEEN
         z = shares[:, [2, 4]].sum(axis=1) > SEEN

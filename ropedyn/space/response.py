@@ -21,7 +21,7 @@ from ..scene import damping
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.scene import Scene
 from .assembly import Assembly, LoadedFields, assemble, bound, foot_of
-from .compile import finer_rope
+from .compile import finer_rope, method_of
 from .rope import SIX, Factors, SpaceRope
 
 AT_ONCE = 128  # That are assembled together.
@@ -82,7 +82,7 @@ def solve_frf(
         frequency=f,
         value=value,
         cost=Cost(
-            "sweep",
+            method_of(scene),
             len(rope.length),
             rope.unknowns,
             factorisations=len(f) * len(asked.components),
@@ -94,7 +94,7 @@ def solve_frf(
 
 
 def _refuse_rates() -> Any:
-    raise SceneError("derivatives are not carried for a rope on an axis: the rope must be straight")
+    raise SceneError("derivatives are not carried for a rope on an axis or its catenary")
 
 
 class AskedPart(NamedTuple):
@@ -132,7 +132,7 @@ class Request:
         factors = Factors(*by, *np.ones((1, len(omega)), dtype=np.complex128))
         points, both = (tuple(drives), tuple(responses)), len(drives)
         places = [
-            rope.x[rope.carried[int(at)].node] if c == WIRE else at
+            rope.x[rope.carried[int(at)].node] if c == WIRE else at * rope.longer
             for c, at in (*drives, *responses)
         ]
         cut, node = rope.cut(np.array(places), check.NEAR * scene.rope.length)

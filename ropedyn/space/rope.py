@@ -77,6 +77,8 @@ class SpaceRope:
         Coordinates that it does not have anywhere.
     carried : tuple of Carried
         Wires at nodes.
+    longer : float
+        Than places along it are told by, times: of one on its catenary, arc over chord.
     """
 
     length: Real
@@ -95,6 +97,7 @@ class SpaceRope:
     held: Flags
     absent: Flags
     carried: tuple[Carried, ...] = ()
+    longer: float = 1.0
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -118,11 +121,13 @@ class SpaceRope:
 
     @computed
     def own(self) -> Index:
-        """Coordinates of each component, shape (components, width): all six, or three and three."""
+        """Coordinates of each component, (components, width): all six, or three of each plane."""
         inside, across = PLANES
         ties = (np.s_[..., inside[:, None], across], np.s_[..., across[:, None], inside])
         tied = any(getattr(self, name)[tie].any() for name in MATRICES for tie in ties)
-        return ALL if tied or self.carried else PLANES
+        if tied or self.carried:
+            return ALL
+        return PLANES[~self.absent[PLANES].all(axis=1)]
 
     @computed
     def blocks(self) -> OwnMatrices:

@@ -129,6 +129,8 @@ def undamped_peaks(model: Model, highest: float, more: int, least: int = 0) -> C
             f"which the scene has {below}: leave it out"
         )
     number = max(below + more, least) + len(model.coordinates) + 1
+    if model.scene.sags:
+        return _of_modes(model.modes(number))
     return _of_modes(solve_modes(model, number, below=None, solver="sweep", strict=False))
 
 
