@@ -80,7 +80,7 @@ class Gravity(Description):
     >>> round(scene.gravity.sag_parameter(rope, 10e3), 2)
     76.62
     >>> scene.compile().modes(2).frequency.round(4)
-    array([0.7071, 0.8676])
+    array([0.7049, 0.8676])
     >>> scene.without("sag").compile().modes(2).frequency.round(4)
     array([0.3536, 0.7071])
     """

@@ -162,7 +162,7 @@ NodeForce, Stop, AddedMass, LocalChange
         >>> rope = rd.Rope(100.0, 2.0, axial_stiffness=2e7)
         >>> hanging = rd.Scene(rope, tension=1000.0, gravity=rd.Gravity()).on_catenary()
         >>> print(round(hanging.rope.length, 6), hanging.tension_at([0.0, 50.0]).round(3))
-        117.296477 [1522.962 1008.582]
+        116.829055 [1521.029 1013.536]
         """
         return catenary_scene(self)
 
