@@ -1,7 +1,13 @@
 from . import ask, study2015
 from .axis.axis import Axis
 from .base.answer import Answer, Cost, load
-from .base.errors import IdentifyWarning, RopedynError, SceneError, SolveError, UnitWarning
+from .base.errors import (
+    IdentifyWarning,
+    RopedynError,
+    SceneError,
+    SolveError,
+    UnitWarning,
+)
 from .base.table import Table
 from .curves.measured import Measured
 from .curves.peaks import Peaks

@@ -33,6 +33,7 @@ from .response.frf import FRF
 from .response.friction.solve import solve_rubbing
 from .response.second_harmonic import solver_of
 from .scene.scene import Scene
+from .space.hanging import Hanging
 from .space.model import compile_space
 
 
@@ -57,8 +58,7 @@ class Model(Compiled):
     chain : Chain
         What the core reads.
     unknowns : tuple of int
-        Of each component, coordinates of nodes that can move, of continuous spans those of
-        stations: 0 for one span between ends that cannot, in which all motion is inside.
+        Of each component, coordinates of nodes (of stations of spans) that can move.
     choice : Choice or None
         Why there are so many elements, where `Scene.compile` chose them for a tolerance.
     """
@@ -578,10 +578,14 @@ class Model(Compiled):
         return solve_branches(asked) if branches else solve_stepped(asked)
 
 
+class HangingModel(Hanging, Model):  # type: ignore[misc]  # `Hanging` takes what `Model` names
+    """A model of a rope that sags; see `Hanging`."""
+
+
 def compile_model(scene: Scene, **how: Any) -> Any:
     """Compile a scene; see `Scene.compile`."""
-    if scene.is_spatial:
+    if scene.is_spatial or (scene.sags and scene.is_graded):
         return compile_space(scene, **how)
-    model = object.__new__(Model)
+    model = object.__new__(HangingModel if scene.sags else Model)
     vars(model).update(vars(compile_within(scene, **how)))
     return model

@@ -127,8 +127,10 @@ def in_space(
     for i, coordinate in enumerate(("x", "y", "z")):
         if coordinate in coordinates:
             own[:, i] = shape[:, coordinates.index(coordinate)]
-    frames = axis.frame(x * (1 - LEFT))
-    return axis.position(x), np.einsum("nij,nj->ni", frames, own)
+    # of a rope on its catenary places are told along the chord
+    s = x * (axis.length / x[-1])
+    frames = axis.frame(s * (1 - LEFT))
+    return axis.position(s), np.einsum("nij,nj->ni", frames, own)
 
 
 def scale_of(rest: Real, moved: NDArray[Any], scale: float | None) -> float:

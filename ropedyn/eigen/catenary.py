@@ -17,8 +17,9 @@ from ..scene.parts.part import places, standing, stretches
 from ..scene.parts.stretch import ropes
 from ..scene.scene import Scene
 from ..scene.stations import nearest, stations_at
+from .fewest import solve_components
 from .modes import OnCatenary
-from .spectrum import in_hertz, spectrum
+from .spectrum import in_hertz, merged, spectrum
 from .vectors import later_within, within
 
 ALONE = {"z": {"x", "z", "beta"}, "y": {"y", "gamma"}}
@@ -27,6 +28,7 @@ MORE = 12
 """Modes of the straight rope beyond those asked, of which the curved one's are made."""
 HALF_WAVE = 10
 """Points on the shortest half wave, where shapes are looked at."""
+ABOVE = 1e-9  # Of the highest eigenvalue asked for: modes below are all.
 RESTS = 1e-10
 """Of the span: so far from its end a rope that rests may end."""
 STRAIGHT = ("sag", "stretch", "lay", "twist", "polar inertia")
@@ -222,18 +224,23 @@ class _Straight(NamedTuple):
         model = compile_scene(scene.without(*(left & {*scene.effects})))
         k = next(k for k, component in enumerate(model.components) if own in component)
         eigenvalue, _ = spectrum(model, model.components[k], number)
+        # shapes come of all modes below a limit: those of the other plane lie between
+        limit = float(eigenvalue[-1]) * (1 + ABOVE)
+        found = solve_components(model, "sweep", None, limit, shaped=False)
+        every, _, order = merged(found, None)
+        which = np.repeat(np.arange(len(found)), [len(one.eigenvalue) for one in found])[order]
+        mine = np.flatnonzero(which == k)
         longest = np.diff(model.x).max() / model.x[-1]
         points = max(8, math.ceil(HALF_WAVE * number * longest))
-        which = np.full(len(eigenvalue), k)
-        vectors = later_within(model, which, math.inf, eigenvalue, points)
-        shape = vectors.shape[:, :, model.coordinates.index(own)]
+        vectors = later_within(model, which, limit, every, points)
+        shape = vectors.shape[mine][:, :, model.coordinates.index(own)]
         x = within(model.x, points)
         first = range(0, len(x) - 1, points)
         cut = [slice(k, k + points + 1) for k in first]
         spline = [CubicSpline(x[one], shape[:, one], axis=1) for one in cut]
-        bent = vectors.energy.get("bending", np.zeros(len(which)))
+        bent = vectors.energy.get("bending", np.zeros(len(which)))[mine]
         across = np.stack([x[one] for one in cut])
-        return cls(eigenvalue, vectors.modal_mass, bent, across, spline)
+        return cls(every[mine], vectors.modal_mass[mine], bent, across, spline)
 
     @property
     def matrices(self) -> tuple[Real, Real]:

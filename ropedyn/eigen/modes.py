@@ -87,8 +87,9 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         Absolute error of the frequency that the parabola of a rope that sags causes [Hz]: the
         distance to the mode of the same number on the curve that the rope, and the masses on it,
         really rest on, by Ritz's method with the shapes of the straight rope; of twist the square
-        of the largest slope. 0 without sag, infinite where it is not known: in the plane of a laid
-        rope, and where ends do not hold x or something between them does.
+        of the largest slope. 0 without sag and of modes that are of that curve themselves, as
+        `cost.method` says ("sweep on the catenary"), infinite where it is not known: in the plane
+        of a laid rope, and where ends do not hold x or something between them does.
     catenary : ndarray, shape (k,)
         The frequency on that curve [Hz]; NaN where it is not known.
     certified : bool
@@ -312,7 +313,8 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
             columns["plane"] = self.plane
         if (self.growth > 0).any():
             columns["growth [1/s]"] = self.growth
-        return Table.of("natural frequencies", columns | self._shares)
+        where = " on the catenary" if self.cost.method.endswith("catenary") else ""
+        return Table.of(f"natural frequencies{where}", columns | self._shares)
 
     def plot(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
         """Plot the shapes of one coordinate along the rope, the first one by default."""

@@ -16,13 +16,14 @@ from ..base import check
 from ..base.answer import Cost
 from ..base.array import Integer, Real
 from ..base.computed import computed, waited
-from ..base.errors import SceneError
+from ..base.errors import ModelWarning, SceneError, warn
 from ..base.progress import Progress
 from ..base.unit import QUANTITIES
 from ..chain.compile import compile_scene
 from ..chain.place import observed, points
 from ..eigen.spectrum import eigenvalue_of
 from ..response.question import workers_of
+from ..scene.hung import PARABOLA, parabola_error
 from ..scene.scene import Scene
 from ..space import response as space_response
 from ..space.model import compile_space
@@ -359,4 +360,10 @@ def compile_family(
     if elements is not None or element not in (None, "continuous"):
         compile_one = compile_space if scene.is_spatial else compile_scene
         compile_one(scene, elements=elements, element=element)
+    if scene.sags and (off := parabola_error(scene)) > PARABOLA:
+        warn(
+            f"the rows of a family that sags are those of a parabola, here off by up to {off:.2g} "
+            "of a frequency",
+            ModelWarning,
+        )
     return Family(scene, known.paths, elements, element)

@@ -45,6 +45,11 @@ def refuse_axis(scene: Described, what: str) -> None:
     """Refuse what is known of straight ropes alone."""
     if scene.rope.axis is not None:
         raise SceneError(f"rope must be straight for {what}, got one on an axis")
+    if scene.sags and scene.is_graded:
+        raise SceneError(
+            f"sag or own_weight must be False for {what}, got gravity that both curves a rope and "
+            "changes its tension along it"
+        )
     if scene.is_spatial:
         raise SceneError(f"torque, principal_angle and wound wires must be left out for {what}")
 
@@ -53,6 +58,8 @@ def in_space(scene: Described) -> str:
     """Say of what all six coordinates are solved at once."""
     if scene.rope.axis is not None:
         return "a rope on an axis"
+    if scene.sags:
+        return "a rope on its catenary"
     return "a rope with torque, turned principal axes or a wound wire"
 
 
@@ -64,7 +71,7 @@ def _check_on_axis(scene: Described) -> None:
         return
     axis, hangs = scene.rope.axis, hanging(scene.rope, scene.gravity)
     what = in_space(scene)
-    if scene.planes != "both":
+    if scene.planes != "both" and hangs is None:
         raise SceneError(f'planes must be "both" for {what}, got "z"')
     heavy = scene.gravity is not None and hangs is None
     absent = {
@@ -334,18 +341,12 @@ def _check_tension(scene: Described) -> None:
         check.position(at, "at of the tension", scene.rope.length)
     if not scene.is_graded:
         return
-    if scene.sags:
-        raise SceneError(
-            "gravity of an inclined rope with axial_stiffness both curves it and changes its "
-            "tension along it, which is not solved together: say sag=False, or own_weight=False "
-            f"and read Modes.catenary, which knows both, got {scene.gravity}"
-        )
     if scene.rope.lay_slope:
         raise SceneError(
             "lay_slope must be 0 or None where the tension grows along the rope, got "
             f"{scene.rope.lay_slope!r}"
         )
-    if scene.rope.bending_stiffness is None:
+    if scene.rope.bending_stiffness is None and not scene.sags:
         pulsating = scene.tension.amplitude if isinstance(scene.tension, Tension) else 0.0
         refuse_slack(scene.grade, pulsating, (_is_bare(scene, 0), _is_bare(scene, 1)))
 

@@ -43,10 +43,12 @@ class Gravity(Description):
 
     alone and antisymmetric ones not at all. With x free at an end h is 0 and sag stiffens nothing.
 
-    It is accepted for a sag w L^2/8H up to an eighth of L, the whole rope's whatever supports it
-    between. The weight of what stands on it does not curve it; a `PointMass` keeps its inertia
-    along x. `Modes.model_error` says what both leave out, and `Modes.catenary` what is true.
-    Where both would act, an inclined rope with axial stiffness, one of them has to be left out.
+    The parabola is the whole rope's whatever supports it between; the weight of what stands on it
+    does not curve it; a `PointMass` keeps its inertia along x. `Modes.model_error` says what that
+    leaves out, and `Modes.catenary` what is true. Where it may be more than a thousandth of a
+    frequency, above frequencies along the rope, and where both effects act, modes, counts,
+    responses and statics of continuous spans are those of `Scene.on_catenary`; what is not carried
+    there stays the parabola's with a `ModelWarning`, and is refused where both act.
 
     Parameters
     ----------
@@ -78,7 +80,7 @@ class Gravity(Description):
     >>> round(scene.gravity.sag_parameter(rope, 10e3), 2)
     76.62
     >>> scene.compile().modes(2).frequency.round(4)
-    array([0.7071, 0.8676])
+    array([0.7049, 0.8676])
     >>> scene.without("sag").compile().modes(2).frequency.round(4)
     array([0.3536, 0.7071])
     """

@@ -37,11 +37,17 @@ PROPERTIES = {
 SECOND_PLANE = "second plane"  # The effect that a scene moves in the plane of y too.
 
 
+IN_PLANE = ("x", "z", "beta")
+"""Coordinates of a plane curve in its plane."""
+
+
 def coordinates_of(rope: Rope, mean_tension: float, planes: str) -> tuple[str, ...]:
     """Return the coordinates that a rope under a tension has."""
     bends = rope.bending_stiffness is not None
     if rope.axis is not None:
-        return COORDINATES if bends else COORDINATES[:3]
+        own = COORDINATES if bends else COORDINATES[:3]
+        # a catenary alone has a plane to move in
+        return own if planes == "both" else tuple([c for c in own if c in IN_PLANE])
     present = {
         "x": rope.axial_stiffness is not None,
         "z": bends or mean_tension != 0,

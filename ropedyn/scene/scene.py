@@ -12,6 +12,7 @@ from . import left, toml
 from .agree import agree
 from .card import card, card_html, card_text, warn_of
 from .described import EFFECTS, Described
+from .hung import catenary_scene
 
 if TYPE_CHECKING:
     from ..family.family import Family
@@ -75,6 +76,8 @@ NodeForce, Stop, AddedMass, LocalChange
 
     def _agree(self) -> None:
         agree(self)
+        if self.sags and self.is_graded:
+            self.on_catenary()
 
     def replace(self, **changes: Any) -> Scene:
         """Return a scene with these arguments changed.
@@ -129,6 +132,39 @@ NodeForce, Stop, AddedMass, LocalChange
         for effect in effects:
             check.one_of(effect, "effect", EFFECTS)
         return self.replace(**left.left_of(self, effects))
+
+    def on_catenary(self) -> Scene:
+        """Return a scene of the same rope on the catenary that its weight hangs it in.
+
+        The rope of this scene is described by its chord: its length, its inclination, and of its
+        tension the component along the chord. On the curve that component is
+
+            T_ref + w sin(inclination) (s - s_ref)
+
+        exactly, with w the weight per length: T_ref is the tension of the scene, s_ref the place of
+        `Tension`, a share of the arc as it is of the chord. The horizontal tension H and with it
+        the parameter H/w follow. Density and stiffnesses are those of a metre of the curve; parts
+        stand at their share of the arc; x is along the tangent there and z towards the centre of
+        the curve, alpha and beta alike; what an end clamps is the rope as it hangs.
+
+        `compile` does so itself where a parabola may be a thousandth of a frequency off.
+
+        Raises
+        ------
+        SceneError
+            If gravity does not curve the rope or makes another curve of it (masses and resonators
+            on it, stretches of other weight), or what is not carried along a curve: laid ropes,
+            twist in one plane, a tension that is not constant.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(100.0, 2.0, axial_stiffness=2e7)
+        >>> hanging = rd.Scene(rope, tension=1000.0, gravity=rd.Gravity()).on_catenary()
+        >>> print(round(hanging.rope.length, 6), hanging.tension_at([0.0, 50.0]).round(3))
+        116.829055 [1521.029 1013.536]
+        """
+        return catenary_scene(self)
 
     def needed(self, question: Any, tolerance: float) -> tuple[str, ...]:
         """Name the effects that an answer needs; nothing is left out of the scene by that.

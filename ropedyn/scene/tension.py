@@ -41,7 +41,8 @@ class Tension(Description):
         [N]; negative is compression.
     at : {"middle", "start", "end"} or float
         Where along the rope it is the mean [m]; elsewhere the rope's weight has changed it: see
-        `Gravity`. Without that it says nothing.
+        `Gravity`. Without that it says nothing. Of a rope that is curved too it is the component
+        along the chord, and the place a share of the arc: see `Scene.on_catenary`.
     amplitude : float
         Of the pulsation [N].
     frequency : float

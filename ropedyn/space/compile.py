@@ -23,9 +23,19 @@ from .rope import SIGN, SIX, Carried, SpaceRope
 from .wire import wound_wire
 
 
+def resting(scene: Scene) -> Scene:
+    """Return the scene about whose axis it moves: of a rope that its weight curves a catenary."""
+    return scene.on_catenary() if scene.sags else scene
+
+
 def axis_of(scene: Scene) -> Axis:
     """Return the axis of a scene, a line where it has none."""
-    return scene.rope.axis or Axis.line(scene.rope.length)
+    return resting(scene).rope.axis or Axis.line(scene.rope.length)
+
+
+def method_of(scene: Scene) -> str:
+    """Return how answers are found, and on what where it is not what the scene says."""
+    return "sweep on the catenary" if scene.sags else "sweep"
 
 
 def section_of(scene: Scene) -> SpaceSection:
@@ -68,6 +78,7 @@ def rest_of(scene: Scene) -> Rest:
 
 def rope_of_scene(scene: Scene, *, followed: float = FOLLOWED) -> SpaceRope:
     """Return the pieces, with ends and drag."""
+    chord, scene = scene.rope.length, resting(scene)
     axis = axis_of(scene)
     absent = tuple(c for c in SIX if c not in scene.coordinates)
     rope = rope_of(axis, section_of(scene), rest_of(scene), absent, followed=followed)
@@ -79,7 +90,7 @@ def rope_of_scene(scene: Scene, *, followed: float = FOLLOWED) -> SpaceRope:
         rope.held[node] |= [stand.holds(c) for c in SIX]
         for array, what in zip((rope.springs, rope.masses, rope.dashpots), _standing(stand)):
             array[node] = np.diag(what)
-    return _with_parts(rope, scene)
+    return _with_parts(replace(rope, longer=scene.rope.length / chord), scene)
 
 
 def _with_parts(rope: SpaceRope, scene: Scene) -> SpaceRope:

@@ -14,7 +14,7 @@ from ..base import check
 from ..base.answer import Cost
 from ..base.array import Index, Real
 from ..base.computed import Late, computed
-from ..base.errors import SolveError
+from ..base.errors import SceneError, SolveError
 from ..base.unit import FAMILY
 from ..eigen.eigen import check_asked, no_mesh
 from ..eigen.modes import Modes, OnCatenary, UndampedMesh, UndampedVectors
@@ -23,7 +23,7 @@ from ..eigen.vectors import largest, within
 from ..scene import damping
 from ..scene.scene import Scene
 from .assembly import MOST_PARTS, Assembly, assemble
-from .compile import axis_of, finer_rope
+from .compile import axis_of, finer_rope, method_of
 from .rope import SIX, Factors, SpaceRope, unforced
 from .sensitivity import SpaceSensitivity
 from .spectrum import (
@@ -62,18 +62,18 @@ def solve_modes(
     return Modes(
         coordinates=rope.coordinates,
         certified=True,
-        x=within(rope.x, shapes.points),
+        x=within(rope.x, shapes.points) / rope.longer,
         frequency=frequency,
         eigenvalue=value,
         growth=np.sqrt(np.maximum(-value, 0.0)),
         rounding_error=error_in_hertz(value, found.error),
         rounding_bound=error_in_hertz(value, found.error),
         plane=Late(lambda: shapes.plane),
-        cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=found.counts),
+        cost=Cost(method_of(scene), len(rope.length), rope.unknowns, sweeps=found.counts),
         vectors=Late(partial(vectors_of, shapes)),
         mesh=partial(_mesh, scene, rope, value, frequency),
         hanging=partial(OnCatenary, np.zeros_like(frequency), frequency),
-        solve_shapes=partial(_again, shapes),
+        solve_shapes=partial(_again, scene, shapes),
         line=partial(axis_of, scene),
     )
 
@@ -90,8 +90,10 @@ def _mesh(scene: Scene, rope: SpaceRope, eigenvalue: Real, frequency: Real) -> U
     )
 
 
-def _again(shapes: SpaceShapes, points: int | None = None) -> Any:
+def _again(scene: Scene, shapes: SpaceShapes, points: int | None = None) -> Any:
     """Return what derivatives are computed from."""
+    if not scene.is_spatial:
+        raise SceneError("derivatives and damage are not carried for a rope on its catenary")
     return SpaceSensitivity(shapes)
 
 
@@ -268,7 +270,12 @@ class SpaceShapes:
 
     @property
     def plane(self) -> Any:
-        """In which each mode moves across."""
+        """In which each mode moves across: on a plane curve what its component moves in."""
+        rope = self.rope
+        if len(rope.own[0]) < len(SIX) and rope.bend[:, :, 0, 2].all():
+            return np.array(["z" if SIX.index("z") in own else "y" for own in rope.own])[
+                self.component
+            ]
         shares = self.kinetic / self.kinetic.sum(axis=1, keepdims=True)
         y = shares[:, [1, 5]].sum(axis=1) > SEEN
         z = shares[:, [2, 4]].sum(axis=1) > SEEN

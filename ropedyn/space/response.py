@@ -22,7 +22,7 @@ from ..scene import damping
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.scene import Scene
 from .assembly import ROUNDINGS, Assembly, LoadedFields, assemble, bound
-from .compile import finer_rope
+from .compile import finer_rope, method_of
 from .rope import SIX, Factors, SpaceRope
 
 AT_ONCE = 128  # That are assembled together.
@@ -105,7 +105,7 @@ def solve_frf(
         frequency=f,
         value=value,
         cost=Cost(
-            "sweep",
+            method_of(scene),
             len(rope.length),
             rope.unknowns,
             factorisations=len(f) * len(asked.components),
@@ -118,14 +118,16 @@ def solve_frf(
 
 
 def _refuse_rates() -> Any:
-    raise SceneError("derivatives are not carried for a rope on an axis: the rope must be straight")
+    raise SceneError("derivatives are not carried for a rope on an axis or its catenary")
 
 
 def _place(rope: SpaceRope, point: tuple[Any, ...]) -> float:
     """Return where a point is [m]."""
     if check.is_end(point):
         return float(rope.x[-point[1]])
-    return float(rope.x[rope.carried[int(point[1])].node] if point[0] == WIRE else point[1])
+    if point[0] == WIRE:
+        return float(rope.x[rope.carried[int(point[1])].node])
+    return float(point[1] * rope.longer)
 
 
 class SpacePorts(NamedTuple):

@@ -79,6 +79,8 @@ class SpaceRope:
         Wires at nodes.
     closed : bool
         Whether its ends are one node, the first: nothing stands at the last.
+    longer : float
+        Than places along it are told by, times: of one on its catenary, arc over chord.
     """
 
     length: Real
@@ -98,6 +100,7 @@ class SpaceRope:
     absent: Flags
     carried: tuple[Carried, ...] = ()
     closed: bool = False
+    longer: float = 1.0
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -121,11 +124,13 @@ class SpaceRope:
 
     @computed
     def own(self) -> Index:
-        """Coordinates of each component, shape (components, width): all six, or three and three."""
+        """Coordinates of each component, (components, width): all six, or three of each plane."""
         inside, across = PLANES
         ties = (np.s_[..., inside[:, None], across], np.s_[..., across[:, None], inside])
         tied = any(getattr(self, name)[tie].any() for name in MATRICES for tie in ties)
-        return ALL if tied or self.carried else PLANES
+        if tied or self.carried:
+            return ALL
+        return PLANES[~self.absent[PLANES].all(axis=1)]
 
     @computed
     def blocks(self) -> SpaceRope:

@@ -25,7 +25,7 @@ class ShapeInSpace(NamedTuple):
     def of(cls, scene: Scene, modes: Modes, k: int, scale: float | None) -> ShapeInSpace:
         """Return mode k, its displacement multiplied by a scale."""
         axis = axis_of(scene)
-        if abs(modes.x[-1] - axis.length) > check.NEAR * axis.length:
+        if abs(modes.x[-1] - scene.rope.length) > check.NEAR * scene.rope.length:
             raise SceneError("modes must be of this model, got those of a rope of another length")
         rest, moved = in_space(axis, modes.coordinates, modes.x, modes.shape[k])
         by = scale_of(rest, moved, scale)

@@ -18,7 +18,7 @@ from ..response.critical import exceeds
 from ..response.deflection import POINTS, Deflection, summed_loads
 from ..scene.scene import Scene
 from .assembly import ROUNDINGS, Assembly, LoadedFields, assemble, bound
-from .compile import finer_rope
+from .compile import finer_rope, method_of
 from .modes import check_points
 from .rope import SIX, SpaceRope, unforced
 from .spectrum import count_below
@@ -37,10 +37,11 @@ def solve_static(
             "unstable=True answers all the same"
         )
     own, near = ~rope.absent, check.NEAR * scene.rope.length
-    x = np.concatenate([within(rope.x, points or POINTS), [at for _, at in loads]])
+    along = {(coordinate, at * rope.longer): load for (coordinate, at), load in loads.items()}
+    x = np.concatenate([within(rope.x, points or POINTS), [at for _, at in along]])
     cut, _ = rope.cut(x, near)
     x, shape = cut.x, (len(cut.x), int(own.sum()))
-    solved = _under(cut, loads)
+    solved = _under(cut, along)
     displacement, force = np.zeros((2, len(x), 6))
     for one in solved:
         displacement[:, one.own], force[:, one.own] = one.displacement, one.force
@@ -51,7 +52,7 @@ def solve_static(
             return _same(shape, 0.0)
         other, node = finer.cut(x, near)
         there = np.zeros_like(displacement)
-        for one in _under(other, loads):
+        for one in _under(other, along):
             there[:, one.own] = one.displacement[node]
         return np.abs(displacement - there)[:, own]
 
@@ -65,12 +66,14 @@ def solve_static(
 
     return Deflection(
         coordinates=rope.coordinates,
-        x=x,
+        x=x / rope.longer,
         displacement=displacement[:, own],
         force=force[:, own],
         load=tuple(loads.items()),
         critical_loads=critical,
-        cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=1, factorisations=len(solved)),
+        cost=Cost(
+            method_of(scene), len(rope.length), rope.unknowns, sweeps=1, factorisations=len(solved)
+        ),
         rounding_error=Late(lambda: rounding()[0]),
         force_rounding_error=Late(lambda: rounding()[1]),
         mesh_error=Late(mesh),

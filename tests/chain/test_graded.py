@@ -285,14 +285,6 @@ SLACK = {
         {"tension": rd.Tension(1e-5, at="start")},
         "tension must be 0 at a free end or at least 1e-06 of its largest",
     ),
-    "both effects": (
-        {
-            "rope": rd.Rope(10.0, 3.0, axial_stiffness=1e6),
-            "gravity": rd.Gravity(inclination=0.4),
-            "tension": 1e4,
-        },
-        "say sag=False, or own_weight=False",
-    ),
     "lay": (
         {
             "rope": rd.Rope(

@@ -10,6 +10,7 @@ from exact_chain import condition as chain_condition
 from exact_chain import error_over_condition, omega_of, relative
 from exact_span import Continuum, coupled
 from mpmath import mpf
+from parabolas import parabola
 from random_scene import log_uniform
 from spans import is_counted, worst_error
 
@@ -87,7 +88,7 @@ PARAMETERS = [1e-12, 1e-3, 1.0, 30.0, 39.0, 40.0, 300.0, 1e4, 1e6, 1e9]
 )
 def test_hanging_string_has_irvines_frequencies(parameter, claim):
     scene = hanging(parameter)
-    modes = scene.compile().modes(9)
+    modes = parabola(scene).modes(9)
     assert modes.certified
     symmetric, antisymmetric = irvine(scene, 5)
     exact = sorted([*symmetric, *antisymmetric])[:9]
@@ -100,21 +101,21 @@ def test_hanging_string_has_irvines_frequencies(parameter, claim):
 def test_sag_does_not_change_antisymmetric_modes(parameter):
     # the axial modes of the rope without sag are far above
     scene = hanging(parameter, axial=1e10)
-    sagging, straight = (s.compile().modes(7).frequency for s in (scene, scene.without("sag")))
+    sagging, straight = (parabola(s).modes(7).frequency for s in (scene, scene.without("sag")))
     for antisymmetric in straight[1::2]:
         # rounding of two walks of a few pieces each
         assert np.abs(sagging / antisymmetric - 1).min() <= 1e-14
 
 
 def test_first_symmetric_mode_passes_the_first_antisymmetric_one_at_the_crossover():
-    below, above = (hanging(CROSSOVER * q).compile().modes(2) for q in (0.99, 1.01))
+    below, above = (parabola(hanging(CROSSOVER * q)).modes(2) for q in (0.99, 1.01))
     assert below.energy["stretch"][0] > 0.1 > 1e-3 > below.energy["stretch"][1]
     assert above.energy["stretch"][1] > 0.1 > 1e-3 > above.energy["stretch"][0]
 
 
 def test_both_modes_of_the_crossover_are_found_and_counted():
     scene = hanging(CROSSOVER)
-    model = scene.compile()
+    model = parabola(scene)
     modes = model.modes(3)
     twice = math.sqrt(TENSION / DENSITY) / LENGTH
     # d ln Omega/d ln lambda^2 is below 1, and lambda^2 is off by the rounding of its factors
@@ -127,7 +128,7 @@ def test_both_modes_of_the_crossover_are_found_and_counted():
 
 def test_inextensible_string_has_the_root_of_the_tangent():
     # tan x = x: Omega = 2.8606 pi; lambda^2 = 1e12 leaves 16 x^2/lambda^2 of it
-    frequency = hanging(1e12).compile().modes(2).frequency
+    frequency = parabola(hanging(1e12)).modes(2).frequency
     root = float(mpmath.findroot(lambda x: mpmath.sin(x) - x * mpmath.cos(x), 4.49))
     assert round(2 * root / math.pi, 4) == 2.8606
     assert frequency[0] == pytest.approx(math.sqrt(TENSION / DENSITY) / LENGTH, rel=10 * EPS)
@@ -139,7 +140,7 @@ def test_inextensible_string_has_the_root_of_the_tangent():
 @pytest.mark.parametrize("inclination", [-1.2, 0.4, 1.5])
 def test_inclined_rope_hangs_by_the_part_of_its_weight_across_it(inclination):
     level, inclined = hanging(20.0), hanging(20.0, inclination=inclination)
-    first, second = (s.compile().modes(4).frequency for s in (level, inclined))
+    first, second = (parabola(s).modes(4).frequency for s in (level, inclined))
     # g/cos cos: two roundings of g, whose logarithmic derivative is below 1
     np.testing.assert_allclose(second, first, rtol=20 * EPS)
 
@@ -147,7 +148,7 @@ def test_inclined_rope_hangs_by_the_part_of_its_weight_across_it(inclination):
 def test_turning_gravity_round_turns_motion_along_the_rope_alone():
     scene = beam(20.0, 100.0)
     turned = scene.replace(gravity=rd.Gravity(-scene.gravity.g))
-    first, second = (s.compile().modes(4) for s in (scene, turned))
+    first, second = (parabola(s).modes(4) for s in (scene, turned))
     # two searches begin elsewhere and end within the rounding of one walk
     np.testing.assert_allclose(second.frequency, first.frequency, rtol=10 * EPS)
     # either sign of an antisymmetric shape has a largest component of 1
@@ -158,7 +159,7 @@ def test_turning_gravity_round_turns_motion_along_the_rope_alone():
 def test_without_a_hold_along_the_rope_sag_stiffens_nothing():
     sliding = rd.End(x="free", beta="free")
     scene = beam(100.0, 50.0, ends=("pinned", sliding))
-    assert scene.compile().modes(3).frequency == pytest.approx(
+    assert parabola(scene).modes(3).frequency == pytest.approx(
         scene.without("sag").compile().modes(3).frequency, rel=20 * EPS
     )
 
@@ -167,7 +168,7 @@ def test_rope_that_nothing_lifts_moves_across_itself_and_along():
     # z = 1 all along moves the sliding end by w L/T, and nothing resists it
     rising = rd.End(z="free", beta="free")
     scene = beam(30.0, 50.0, ends=(rising, "free"))
-    modes = scene.compile().modes(3)
+    modes = parabola(scene).modes(3)
     assert modes.frequency[0] == 0
     x, z, _ = modes.shape[0, -1]
     slope = DENSITY * scene.gravity.g * LENGTH / TENSION
@@ -205,7 +206,7 @@ def pinned(scene, near):
 @pytest.mark.parametrize(("parameter", "stiff"), [(0.01, 1e2), (20.0, 1e2)])
 def test_pinned_beam_has_the_roots_of_its_sum_over_modes(parameter, stiff):
     scene = beam(parameter, stiff, ends=("pinned", "pinned"))
-    modes = scene.compile().modes(4)
+    modes = parabola(scene).modes(4)
     symmetric = np.flatnonzero(modes.energy["stretch"] > 1e-9)
     assert len(symmetric) >= 2
     exact = [pinned(scene, modes.frequency[k]) for k in symmetric]
@@ -216,7 +217,7 @@ def test_pinned_beam_has_the_roots_of_its_sum_over_modes(parameter, stiff):
 def beam_error(parameter, stiff, end):
     """Largest error of two eigenvalues of a hanging beam over their sensitivity."""
     scene = beam(parameter, stiff, ends=(end, end))
-    modes = scene.compile().modes(3)
+    modes = parabola(scene).modes(3)
     assert modes.certified
     return worst_error(scene, modes, [0, 2])
 
@@ -252,7 +253,7 @@ def test_hanging_beams_of_any_stiffness_have_their_exact_frequencies(parameter, 
 @pytest.mark.parametrize("parameter", [5.0, 1e3])
 def test_no_mode_of_a_hanging_beam_is_missed(parameter):
     scene = beam(parameter, 1e2, parts=[rd.PointMass(0.3, 0.05)])
-    assert is_counted(scene, scene.compile().modes(5))
+    assert is_counted(scene, parabola(scene).modes(5))
 
 
 LAID = {
@@ -266,8 +267,8 @@ LAID = {
 
 def test_sag_joins_all_coordinates_of_a_laid_rope():
     scene = hanging(30.0, rope=LAID)
-    modes = scene.compile().modes(4)
-    assert scene.compile().components == (("x", "z", "alpha", "beta"),)
+    modes = parabola(scene).modes(4)
+    assert parabola(scene).components == (("x", "z", "alpha", "beta"),)
     # a sum over half waves and pieces of four coordinates, as for beams
     assert worst_error(scene, modes, [1]) <= 1e-13
 
@@ -275,7 +276,7 @@ def test_sag_joins_all_coordinates_of_a_laid_rope():
 def test_sag_joins_stretch_and_bending_and_not_twist():
     scene = beam(30.0, 1e2)
     scene = scene.replace(rope=scene.rope.replace(torsional_stiffness=0.3, polar_inertia=1e-6))
-    assert scene.compile().components == (("x", "z", "beta"), ("alpha",))
+    assert parabola(scene).components == (("x", "z", "beta"), ("alpha",))
     assert scene.without("sag").compile().components == (("x",), ("z", "beta"), ("alpha",))
 
 
@@ -311,7 +312,7 @@ def some_scene(random):
 
 def span_error(scene, f, drive, response):
     """Relative error of a response of continuous spans over the condition of the answer."""
-    frf = scene.compile().frf(f, drive=drive, response=response, threads=1)
+    frf = parabola(scene).frf(f, drive=drive, response=response, threads=1)
     with mpmath.workdps(60):
         exact = Continuum(scene, coupled(scene, "z"))
         (value,) = exact.receptance(omega_of(f), drive, [response])
@@ -329,7 +330,7 @@ def response_errors(seed):
     a, b = (str(random.choice(["x", "z"])) for _ in range(2))
     first = span_error(scene, f, (a, random.uniform(0.1, 0.9)), (b, random.uniform(0.1, 0.9)))
     n = int(random.choice([5, 9, 16]))
-    model = scene.compile(elements=n, element=str(random.choice(["tensed", "rigid"])))
+    model = parabola(scene, elements=n, element=str(random.choice(["tensed", "rigid"])))
     drive, response = (a, int(random.integers(1, n))), (b, int(random.integers(1, n)))
     second, covered = error_over_condition(model, f, drive, response)
     assert covered <= 1
@@ -373,7 +374,7 @@ def test_forces_inside_a_hanging_rope_are_the_exact_ones(seed):
 @pytest.mark.parametrize("stiff", [None, 1e5])
 def test_rounding_of_modes_grows_neither_with_the_chain_nor_with_sag(parameter, stiff):
     scene = hanging(parameter) if stiff is None else beam(parameter, stiff)
-    modes = scene.compile(elements=4096).modes(6)
+    modes = parabola(scene, elements=4096).modes(6)
     assert modes.certified
     # that of a straight chain of as many elements, 1e-13, and room for sums over them
     assert (modes.rounding_error <= 1e-12 * modes.frequency).all()
@@ -383,7 +384,7 @@ def test_rounding_of_modes_grows_neither_with_the_chain_nor_with_sag(parameter, 
 def test_two_cuts_of_a_hanging_rope_are_the_same_rope(seed):
     random = np.random.default_rng(100 + seed)
     scene, _ = some_scene(random)
-    whole, cut = scene.compile(), scene.compile(elements=13, element="continuous")
+    whole, cut = parabola(scene), parabola(scene, elements=13, element="continuous")
     first, second = (model.modes(5) for model in (whole, cut))
     assert (np.abs(first.frequency - second.frequency) <= first.rounding_error * 2).all()
     middle = (first.frequency[:-1] + first.frequency[1:]) / 2
@@ -397,7 +398,7 @@ def test_two_cuts_of_a_hanging_rope_are_the_same_rope(seed):
 def test_solvers_agree_on_hanging_chains(seed, element):
     random = np.random.default_rng(200 + seed)
     scene, f = some_scene(random)
-    model = scene.compile(elements=12, element=element)
+    model = parabola(scene, elements=12, element=element)
     at, to = ("z", float(model.x[5])), ("x", float(model.x[7]))
     sweep, band, assembled = (
         model.frf(f, drive=at, response=[at, to], solver=s) for s in ("sweep", "band", "lapack")
@@ -412,9 +413,9 @@ def test_solvers_agree_on_hanging_chains(seed, element):
 @pytest.mark.parametrize(("element", "order"), [("tensed", 4), ("rigid", 2)])
 def test_hanging_beams_keep_the_order_of_their_elements(stiff, element, order):
     scene = beam(30.0, stiff)
-    true = scene.compile().modes(3).frequency
+    true = parabola(scene).modes(3).frequency
     coarse, fine = (
-        scene.compile(elements=n, element=element).modes(3).frequency for n in (64, 128)
+        parabola(scene, elements=n, element=element).modes(3).frequency for n in (64, 128)
     )
     # the next term of the error is h^2 of it
     rate = np.log2(np.abs(coarse / true - 1) / np.abs(fine / true - 1))
@@ -423,8 +424,8 @@ def test_hanging_beams_keep_the_order_of_their_elements(stiff, element, order):
 
 def test_hanging_strings_keep_the_second_order():
     scene = hanging(30.0)
-    true = scene.compile().modes(3).frequency
-    coarse, fine = (scene.compile(elements=n).modes(3).frequency for n in (64, 128))
+    true = parabola(scene).modes(3).frequency
+    coarse, fine = (parabola(scene, elements=n).modes(3).frequency for n in (64, 128))
     rate = np.log2(np.abs(coarse / true - 1) / np.abs(fine / true - 1))
     np.testing.assert_allclose(rate, 2, atol=0.1)
 
@@ -438,7 +439,7 @@ def test_load_in_the_middle_of_a_hanging_string(options, parameter):
     with mpmath.workdps(30):
         q = exact_parameter(scene) / 12
         z = mpf(load) * LENGTH / (4 * mpf(TENSION)) * (1 - mpf(3) / 4 * q / (1 + q))
-    answer = scene.compile(**options).static({("z", LENGTH / 2): load})
+    answer = parabola(scene, **options).static({("z", LENGTH / 2): load})
     middle = int(np.abs(answer.x - LENGTH / 2).argmin())
     at = answer.coordinates.index("z")
     # a quarter is left of four: some ten eps of the entries
@@ -448,7 +449,7 @@ def test_load_in_the_middle_of_a_hanging_string(options, parameter):
 @pytest.mark.parametrize("options", [{}, {"elements": 6}, {"elements": 16, "element": "rigid"}])
 def test_strain_energies_of_hanging_ropes_add_up(options):
     for scene in (hanging(25.0), beam(25.0, 40.0), hanging(25.0, rope=LAID)):
-        modes = scene.compile(**options).modes(4)
+        modes = parabola(scene, **options).modes(4)
         strain = [v for name, v in modes.energy.items() if name not in modes.coordinates]
         # fractions of a sum; and the largest stretch of a string is two thirds
         np.testing.assert_allclose(sum(strain), 1, rtol=1e-12)
@@ -459,7 +460,7 @@ def test_strain_energies_of_hanging_ropes_add_up(options):
 def test_stretch_of_a_hanging_string_is_that_of_its_added_tension():
     # twice the energies: L_e h^2/EA and the integral of T z'^2; sums over the mode's own shape
     scene = hanging(10.0)
-    modes = scene.compile(elements=256, element="continuous").modes(1)
+    modes = parabola(scene, elements=256, element="continuous").modes(1)
     z = modes.shape[0, :, modes.coordinates.index("z")]
     step = LENGTH / (len(z) - 1)
     area = step * (z[:-1] + z[1:]).sum() / 2
@@ -471,17 +472,17 @@ def test_stretch_of_a_hanging_string_is_that_of_its_added_tension():
 
 def test_mesh_error_of_a_hanging_chain_is_its_distance_to_the_spans():
     scene = beam(30.0, 50.0)
-    modes = scene.compile(elements=12).modes(3)
-    true = scene.compile().modes(3).frequency
+    modes = parabola(scene, elements=12).modes(3)
+    true = parabola(scene).modes(3).frequency
     np.testing.assert_allclose(modes.mesh_error, np.abs(modes.frequency - true), rtol=1e-6)
-    assert "tensed elements" in str(scene.compile(tolerance=1e-5, below=true[2] * 1.01).choice)
+    assert "tensed elements" in str(parabola(scene, tolerance=1e-5, below=true[2] * 1.01).choice)
 
 
 # scenes ------------------------------------------------------------------------------------------
 
 
 def test_gravity_takes_the_inertia_along_the_rope():
-    sagging, straight = (s.compile() for s in (beam(5.0, 9.0), beam(5.0, 9.0).without("sag")))
+    sagging, straight = (parabola(s) for s in (beam(5.0, 9.0), beam(5.0, 9.0).without("sag")))
     at = sagging.coordinates.index("x")
     assert (sagging.chain.inertia[:, at] == 0).all()
     assert (straight.chain.inertia[:, at] == DENSITY).all()

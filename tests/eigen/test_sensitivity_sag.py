@@ -6,6 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 from mpmath import mpf
+from parabolas import parabola
 from test_sensitivity import (
     DENSITY,
     EXACT,
@@ -56,7 +57,7 @@ def test_hanging_string_changes_as_its_characteristic_equation(axial, claim):
     given = {"T": TENSION, "mu": DENSITY, "L": LENGTH, "EA": axial, "g": 800.0, "i": 0.4}
     rope = rd.Rope(LENGTH, DENSITY, axial_stiffness=axial)
     gravity = rd.Gravity(given["g"], inclination=given["i"], own_weight=False)
-    modes = rd.Scene(rope, tension=TENSION, gravity=gravity).compile().modes(5)
+    modes = parabola(rd.Scene(rope, tension=TENSION, gravity=gravity)).modes(5)
     residual = [
         abs(symmetric(2 * mpmath.pi * mpf(f), **{k: mpf(v) for k, v in given.items()}))
         for f in modes.frequency
@@ -74,7 +75,7 @@ def test_antisymmetric_modes_do_not_feel_the_sag():
     scene = rd.Scene(
         rope, tension=TENSION, gravity=rd.Gravity(300.0, inclination=0.4, own_weight=False)
     )
-    modes = scene.compile().modes(4)
+    modes = parabola(scene).modes(4)
     twice = 2 * np.sqrt(TENSION / DENSITY) / (2 * LENGTH)
     second = int(np.abs(modes.frequency - twice).argmin())
     for path in ("gravity.g", "gravity.inclination", "axial_stiffness"):
@@ -131,7 +132,7 @@ PLACES = ("length", "parts[0].start", "parts[1].stop", "parts[2].x")
 @functools.cache
 def hanging(kind):
     """The model of HANGING and its modes."""
-    model = HANGING.compile(**MODELS[kind])
+    model = parabola(HANGING, **MODELS[kind])
     return model, model.modes(4)
 
 
@@ -155,7 +156,7 @@ def test_sag_grows_with_the_square_of_gravity(kind):
     rope = HANGING.rope.replace(lay_coupling=None)
     for g in (0.0, 1e-3, 2e-3):
         scene = HANGING.replace(rope=rope, gravity=rd.Gravity(g))
-        slopes.append(scene.compile(**MODELS[kind]).modes(2).derivative("gravity.g"))
+        slopes.append(parabola(scene, **MODELS[kind]).modes(2).derivative("gravity.g"))
     assert (np.abs(slopes[0]) <= EXACT * np.abs(slopes[1])).all()
     # (w L/H)^2 EA/T is 1e-9 there
     np.testing.assert_allclose(slopes[2], 2 * slopes[1], rtol=1e-7)
@@ -195,7 +196,7 @@ def test_damage_everywhere_is_a_loss_of_the_whole_rope_under_gravity(kind):
     """All but the length of the curve, which a local loss leaves alone."""
     whole = rd.LocalChange(0.0, LENGTH, density=1.0)
     scene = HANGING.replace(parts=[whole])
-    modes = scene.compile(**MODELS[kind]).modes(4)
+    modes = parabola(scene, **MODELS[kind]).modes(4)
     damage = modes.damage()
     for name in ("bending_stiffness", "axial_stiffness", "torsional_stiffness", "polar_inertia"):
         total = damage.frequency_change(0.0, LENGTH, **{name: 1.0})

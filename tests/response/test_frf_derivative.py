@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import EVERYTHING
 from mpmath import mpc, mpf
+from parabolas import parabola
 from ridders import frf_difference
 
 import ropedyn as rd
@@ -187,7 +188,7 @@ def full():
 @functools.cache
 def hanging():
     """The response of HANGING."""
-    return HANGING.compile().frf([0.0, 0.6, 3.1], drive=("z", 33.0), response=[("z", 70.0)])
+    return parabola(HANGING).frf([0.0, 0.6, 3.1], drive=("z", 33.0), response=[("z", 70.0)])
 
 
 def paths_of(scene):

@@ -8,6 +8,7 @@ import re
 
 import numpy as np
 import pytest
+from parabolas import parabola
 
 import ropedyn as rd
 
@@ -161,7 +162,7 @@ def test_without_compiles_to_the_bits_of_the_scene_never_given_the_effect(effect
 @pytest.mark.parametrize("effect", ORDER)
 def test_without_answers_the_bits_of_the_scene_never_given_the_effect(effect):
     first, second = (
-        scene.compile(elements=12, element="rigid").modes(4)
+        parabola(scene, elements=12, element="rigid").modes(4)
         for scene in (full().without(effect), NEVER_GIVEN[effect])
     )
     np.testing.assert_array_equal(first.frequency, second.frequency)

@@ -437,7 +437,7 @@ LOADED = BEAM.replace(parts=[rd.PointMass(0.3, 0.05), rd.Spring(0.7, 2e3)])
 PULSES = STRING.replace(tension=rd.Tension(100.0, amplitude=10.0, frequency=33.0))
 SAGS = rd.Scene(
     rd.Rope(50.0, 5.0, bending_stiffness=1e3, axial_stiffness=5e7),
-    tension=2e4,
+    tension=3e4,
     gravity=rd.Gravity(),
 )
 ROPES = [[80.0], [100.0], [125.0]]

@@ -7,6 +7,7 @@ from conftest import BENDING, LENGTH
 from exact_chain import DIGITS, condition, omega_of, relative
 from exact_roots import continuum
 from mpmath import mpf
+from parabolas import parabola
 
 import ropedyn as rd
 
@@ -76,7 +77,7 @@ SCENES = {
 
 def solved(scene, number=10, **more):
     """Certified modes without mesh error."""
-    model = scene.compile()
+    model = parabola(scene)
     assert model.element == "continuous"
     modes = model.modes(number, **more)
     assert modes.certified
@@ -116,7 +117,7 @@ def is_counted(scene, modes, coordinate="z"):
 def errors(scene, f, drive, responses=None):
     """Errors of responses over their condition; `rounding_error` must bound each."""
     responses = responses or [drive]
-    frf = scene.compile().frf(f, drive=drive, response=responses)
+    frf = parabola(scene).frf(f, drive=drive, response=responses)
     assert (frf.mesh_error == 0).all()
     exact = continuum(scene, drive[0])
     with mpmath.workdps(DIGITS):

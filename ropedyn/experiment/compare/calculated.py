@@ -140,7 +140,7 @@ def undamped_peaks(
             f"which the scene has {below}: leave it out"
         )
     number = max(below + more, least) + len(model.coordinates) + 1
-    if isinstance(model, SpaceModel):
+    if isinstance(model, SpaceModel) or model.scene.sags:
         return _of_modes(model.modes(number))
     return _of_modes(solve_modes(model, number, below=None, solver="sweep", strict=False))
 

@@ -148,7 +148,8 @@ def _modes_alike(mine: NDArray[np.str_], model: Model | SpaceModel, solver: str)
     found = {motion: np.zeros((0, 4)) for motion in wanted}
     number = len(mine)
     while True:
-        if isinstance(model, SpaceModel):
+        sags = model.scene.sags and model.element == "continuous"
+        if isinstance(model, SpaceModel) or sags:
             modes = model.modes(number)
         else:
             modes = solve_modes(model, number, below=None, solver=solver, strict=False)

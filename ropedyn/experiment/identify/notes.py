@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Flags, Index, Integer, Real
+from ...chain.compile import compile_scene
+from ...eigen.eigen import solve_modes
 from ...scene.scene import Scene
 from ..fitting.solution import Solution
 
@@ -135,7 +137,8 @@ def sag_note(scene: Scene, orders: Integer, relative: Real) -> str:
     used = orders > 0
     if not scene.sags or not used.any():
         return ""
-    modes = scene.compile().modes(int(orders.max()))
+    # of the parabola, which is what was fitted
+    modes = solve_modes(compile_scene(scene), int(orders.max()), below=None, solver="sweep")
     off = (modes.model_error / modes.frequency)[orders[used] - 1]
     worst = int((off / relative[used]).argmax())
     if off[worst] <= relative[used][worst]:
