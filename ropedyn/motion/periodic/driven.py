@@ -83,8 +83,10 @@ class Driven:
         return self._holding(found.value.transpose(2, 1, 0)), known_to(found)
 
     def _asked(self, frequency: Real, drives: list[Point], responses: list[Point]) -> FRF:
-        asked = {"drive": drives, "response": responses, "threads": 1, "tight": False}
-        return solve_harmonic(self.asked.model, frequency, **asked)
+        model = self.asked.model
+        return solve_harmonic(
+            model, frequency, drive=drives, response=responses, threads=1, tight=False
+        )
 
     def _holding(self, H: Complex) -> Complex:
         """Hold what friction holds: (f, points and held, points, held and drive) to fewer."""
