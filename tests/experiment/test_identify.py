@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import pickle
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -419,11 +420,11 @@ def test_a_tension_far_from_the_guess_that_orders_were_sought_with_is_named():
     f = pinned_beam(12, TENSION, 2.0)
     guess = scene(1.3 * TENSION, 2.0)
     peaks = rd.Peaks(2 * np.pi * f, std=2e-3 * np.pi * f)
-    with (
-        pytest.warns(rd.IdentifyWarning, match=r"tension is [\d.]+ times its guess: .* rad/s"),
-        pytest.warns(rd.IdentifyWarning, match="divide them by 2 pi"),
-    ):
+    with pytest.warns(rd.IdentifyWarning) as warned:
         fit = rd.identify(guess, peaks, BOTH)
+    words = " ".join(str(one.message) for one in warned)
+    assert re.search(r"tension is [\d.]+ times its guess: .* rad/s", words)
+    assert "divide them by 2 pi" in words
     assert fit.status == "ambiguous" or fit.orders[0] > 1
     assert "of orders: tension" in fit.assumed[-1]
     told = rd.identify(guess, rd.Peaks(f, std=1e-3 * f), BOTH)

@@ -117,7 +117,7 @@ def _pairs(seen: Seen, steps: Real) -> Pairs:
     covariance = np.linalg.inv(precision).astype(np.float64, copy=False)
     found = covariance @ right
     rest = products[:, 0, 0] - np.einsum("gk,gk->g", found[..., 0], right[..., 0])
-    ln_l = -0.5 * (ln_f + np.linalg.slogdet(precision).logabsdet + rest)
+    ln_l = -0.5 * (ln_f + np.linalg.slogdet(precision)[1] + rest)
     # steps lie a constant factor apart, so that d s is proportional to s
     ln_w = ln_l + np.log(step)
     weight = np.exp(ln_w - ln_w.max())
