@@ -112,7 +112,10 @@ class CoupledPassage(LawPassage):
                 error = self._failed(when, *found.error)
                 settles = found.error[1] is not None
                 return Passed(self.looked, when, done, error, settles)
-            progress(done / (len(known) - 1))
+            try:
+                progress(done / (len(known) - 1))
+            except KeyboardInterrupt as error:
+                return Passed(self.looked, block.end, done, error)
         return Passed(self.looked, float(system.time[-1]), done)
 
     def _edges(self) -> Real:

@@ -64,7 +64,10 @@ class LawPassage:
                 settles = failure is not None
                 return Passed(self.looked, reached, done * STAGES, error, settles)
             force, state = forces[-1], motions[-1]
-            progress(done / len(known))
+            try:
+                progress(done / len(known))
+            except KeyboardInterrupt as error:
+                return Passed(self.looked, reached, done * STAGES, error)
         return Passed(self.looked, float(system.time[-1]), done * STAGES)
 
     def _blocks(self, most: int) -> Iterator[Steps]:

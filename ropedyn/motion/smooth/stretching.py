@@ -55,7 +55,10 @@ class StretchedPassage(LawPassage):
                 state = step.carry(state, force)
                 done += 1
             self._look(block, forces, states, done == len(known))
-            progress(done / len(known))
+            try:
+                progress(done / len(known))
+            except KeyboardInterrupt as error:
+                return Passed(self.looked, block.end, done * STAGES, error)
         return Passed(self.looked, float(self.system.time[-1]), done * STAGES)
 
     def _row(self, number: int, h: float, theta: float) -> tuple[Real, Real]:
