@@ -74,13 +74,12 @@ static int turns(const struct sweep *s, int32_t term)
     return any;
 }
 
-/* pieces of 1, 2, 4, .. first pieces of a run, joined by doubling, those that may resonate as
-   coefficients; those that it is crossed by are the largest and the binary digits of the rest */
+/* pieces of 1, 2, 4, .. first pieces of a run, joined by doubling; those that it is crossed by are
+   the largest and the binary digits of the rest */
 static void make_table(struct sweep *s, const struct rd_run *run, int way,
                        const struct sweep_pieces *pieces)
 {
-    const size_t levels = pieces->level + pieces->doublings + 1,
-                 rest = pieces->count & (((size_t)1 << levels) - 1);
+    const size_t levels = pieces->level + 1, rest = pieces->count & (((size_t)1 << levels) - 1);
     struct sweep_table *table = &s->tabled;
     way = turns(s, run->term) ? way : 0;
     if (table->levels == levels && table->element == run->element && table->term == run->term &&
@@ -94,23 +93,20 @@ static void make_table(struct sweep *s, const struct rd_run *run, int way,
                               rd_span_terms(pieces->radians), one);
     else
         s->kernel->make_element(s->chain, &s->block, e, one);
-    for (size_t k = 0; k <= pieces->level; k++) {
-        if (k == pieces->level || rest >> k & 1) {
+    for (size_t k = 0; k < levels; k++) {
+        if (k + 1 == levels || rest >> k & 1) {
             cv *kept = s->table + k * s->coefs;
             if (s->state.flat)
                 memcpy(kept, one, s->coefs * sizeof *one);
             else
                 s->kernel->make_coefficients(one, kept);
         }
-        if (k < pieces->level)
+        if (k + 1 < levels)
             s->kernel->join[s->undamped](s->chain, &s->way[way], run->term, one, one, two);
         cv *swap = one;
         one = two;
         two = swap;
     }
-    for (size_t k = pieces->level + 1; k < levels; k++)
-        s->kernel->twice(s->chain, &s->way[way], run->term, s->table + (k - 1) * s->coefs,
-                         s->table + k * s->coefs);
     *table = (struct sweep_table){levels, rest, run->element, run->term, way, s->state.flat};
 }
 
@@ -338,12 +334,10 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
         scatter(s);
     make_table(s, run, way, &all);
     int begun = 0;
-    for (size_t left = all.count, top = all.level + all.doublings; left > 0; top--) {
+    for (size_t left = all.count, top = all.level; left > 0; top--) {
         size_t pieces = left >> top;
         left -= pieces << top;
-        /* a piece that was doubled turned as far as what it is made of would have, one by one */
-        const double turned = ldexp((double)pieces, top > all.level ? (int)(top - all.level) : 0);
-        s->steps += turned * turned;
+        s->steps += (double)pieces * (double)pieces;
         if (pieces == 0)
             continue;
         const cv *piece = s->table + top * s->coefs;

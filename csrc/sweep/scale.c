@@ -290,8 +290,6 @@ struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct r
         pieces.level++;
         length *= 2.0;
     }
-    while (chain->width > 2 && pieces.count >> (pieces.level + pieces.doublings) > 1)
-        pieces.doublings++;
     return pieces;
 }
 

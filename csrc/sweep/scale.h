@@ -41,14 +41,12 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
                     const struct sweep_extent *extent, struct sweep_block *block,
                     struct sweep_way *way);
 
-/* How a run is crossed: by pieces of 2^level first pieces, below their first cantilever resonance, and
-   of three coordinates and more by 2^doublings of these at once: of fewer, whose spans are closed, the
-   steps by minors take less.
+/* How a run is crossed: by pieces of 2^level first pieces, below their first cantilever resonance.
    A first piece is an element, or one of the 2^halvings parts of a continuous one. */
 struct sweep_pieces {
     int halvings;
-    size_t count, level, doublings; /* first pieces in all; 2^(level + doublings) <= count */
-    double radians;                 /* of a continuous first piece */
+    size_t count, level; /* first pieces in all; 2^level <= count */
+    double radians;      /* of a continuous first piece */
 };
 
 /* the largest wavenumber of a run, and of a continuous one that with evanescent waves [1/m] */
