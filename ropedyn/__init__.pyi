@@ -3,6 +3,7 @@ from .axis.axis import Axis
 from .base.answer import Answer, Cost, load
 from .base.errors import (
     IdentifyWarning,
+    ModelWarning,
     RopedynError,
     SceneError,
     SolveError,
@@ -115,6 +116,7 @@ __all__ = [
     "Measured",
     "ModalDamping",
     "Model",
+    "ModelWarning",
     "Modes",
     "NodeForce",
     "Peaks",
