@@ -102,7 +102,7 @@ class FRFQuestion(AnyQuestion):
 
     def rounding(self, answer: FRF) -> Real:
         """Return the estimated relative error that rounding causes."""
-        return answer.rounding_error
+        return answer.rounding_bound
 
     def change(self, answer: FRF, model: Model, *, solver: str | None = None) -> AnswerChange:
         """Compare an answer with that of a model from which something was left out."""

@@ -65,7 +65,11 @@ class AnyQuestion(Frozen):
 
     def rounding(self, answer: Any) -> Real:
         """Return the relative error that rounding causes, infinite where no bound is known."""
-        return relative_to(self.values(answer), answer.rounding_error if self.bounded else np.inf)
+        if not self.bounded:
+            return relative_to(self.values(answer), np.inf)
+        # what is measured in wider numbers takes longer than most answers
+        quick = getattr(answer, "rounding_bound", None)
+        return relative_to(self.values(answer), answer.rounding_error if quick is None else quick)
 
     def mesh(self, answer: Any) -> Real:
         """Return the relative error that the mesh causes, infinite where no bound is known."""

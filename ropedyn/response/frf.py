@@ -121,6 +121,7 @@ class FRF(Curves):
     solve_rates: Callable[[], ResponseRates] | None = field(
         default=None, repr=False, metadata=TRANSIENT
     )
+    solve_bound: Callable[[], Real] | None = field(default=None, repr=False, metadata=TRANSIENT)
     decay: float = 0.0
     stable: Flags | None = field(default=None, metadata=axes("frequency"))
 
@@ -138,6 +139,15 @@ class FRF(Curves):
                 "derivatives: compile the scene again and ask it for its frf"
             )
         return self.solve_rates()
+
+    @computed
+    def rounding_bound(self) -> Real:
+        """Bound of the relative error of rounding to first order, without wider numbers, as value.
+
+        Some hundred times the error, and known in about the time of the response; what has no other
+        error than that, as an answer from a file, gives `rounding_error`.
+        """
+        return self.rounding_error if self.solve_bound is None else self.solve_bound()
 
     def to(self, quantity: str) -> Self:
         """Return the same response as another quantity; see `Curves.to`."""

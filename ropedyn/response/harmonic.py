@@ -70,11 +70,14 @@ def solve_harmonic(
     drive = slice(None) if several else 0
     value = (value * power if QUANTITIES[quantity] else value)[drive]
 
+    def of_value(error: Real) -> Real:
+        found = tip.gather_error(model, responses, factor, got.value, error)
+        return np.asarray(found[drive] * np.abs(power))
+
     def rounding() -> RoundingOfResponse:
         error, certain = got.error() if tight else (got.bound(), np.zeros(got.value.shape, bool))
-        error = tip.gather_error(model, responses, factor, got.value, error)
         certain = tip.gather_flags(model, responses, certain)
-        return RoundingOfResponse.of(value, error[drive] * np.abs(power), certain[drive])
+        return RoundingOfResponse.of(value, of_value(error), certain[drive])
 
     mesh: MeshOfResponse | Callable[[], MeshOfResponse]
     mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)
@@ -97,6 +100,7 @@ def solve_harmonic(
         ),
         mesh=mesh,
         rounding=Late(rounding),
+        solve_bound=lambda: relative(value, of_value(got.bound())),
         solve_rates=partial(
             FrequencyRates, model, omega, drives, responses, got.answered, got.value
         ),

@@ -408,9 +408,7 @@ class SpaceModel(Frozen):
         velocity: Any = None,
         method: str = "auto",
         modes: None = None,
-        step: None = None,
         tolerance: float | None = None,
-        spectral_radius: float = 1.0,
         snapshots: ArrayLike | None = None,
         progress: Progress = None,
         partial: bool = False,
@@ -435,7 +433,7 @@ class SpaceModel(Frozen):
             Impulses at the first time [N s, N m s].
         method : {"auto", "line"}
             Both are the line of `Model.transient`.
-        modes, step, spectral_radius, partial
+        modes, partial
             Belong to other methods of a straight rope: to be left out.
         tolerance : float, optional
             Part of each response's largest value that errors keep to, 1e-3.
@@ -484,9 +482,7 @@ class SpaceModel(Frozen):
             velocity=velocity,
             method=method,
             modes=modes,
-            step=step,
             tolerance=tolerance,
-            spectral_radius=spectral_radius,
             snapshots=snapshots,
             progress=progress,
             partial=partial,

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from .model import SpaceModel
 
 METHODS = ("auto", "line")
-ALONE = {"modes": None, "step": None, "spectral_radius": 1.0, "partial": False}
+ALONE = {"modes": None, "partial": False}
 """What belongs to methods of straight ropes, and what it is where nothing is said of it."""
 
 
@@ -65,7 +65,6 @@ def solve_transient(
         drives,
         forces,
         watched(model.scene, response, drives),
-        direct=False,
         method="line",
         order=MOTIONS[quantity],
         loads=_released(model, start),

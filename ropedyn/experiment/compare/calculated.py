@@ -150,7 +150,7 @@ def _of_modes(modes: Modes) -> CalculatedPeaks:
     ratio = modes.damping_ratio[number]
     return CalculatedPeaks(
         frequency=modes.frequency[number],
-        error=(modes.mesh_error + modes.rounding_error)[number],
+        error=(modes.mesh_error + modes.rounding_bound)[number],
         damping_ratio=ratio if ratio.any() else np.full(len(ratio), np.nan),
         number=number,
         modes=modes,

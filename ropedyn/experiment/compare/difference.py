@@ -182,7 +182,7 @@ def _numbers(modes: Modes) -> Real:
     # shapes are less right than frequencies, of which the error is quadratic in that of the shape
     off = np.divide(error, np.abs(hertz), out=np.zeros_like(error), where=hertz != 0)
     blurred = (RATIO_MESH * off + RATIO_ROUNDING) * np.abs(ratio)
-    return np.stack([hertz, error + modes.rounding_error, ratio, blurred], axis=1)
+    return np.stack([hertz, error + modes.rounding_bound, ratio, blurred], axis=1)
 
 
 # --- frequency response -----------------------------------------------------------------------
@@ -214,7 +214,7 @@ def change_of_frf(whole: FRF, left: FRF) -> AnswerChange:
 
 def _known(frf: FRF) -> Complex:
     """Return values; one without a correct digit, as by symmetry, counts as 0."""
-    return np.where(frf.rounding_error < 1, frf.value, 0.0)
+    return np.where(frf.rounding_bound < 1, frf.value, 0.0)
 
 
 def _ratio(change: Complex, before: Complex) -> Real:
@@ -233,7 +233,7 @@ def _level(before: Complex, after: Complex) -> Real:
 
 
 def _relative_error(frf: FRF) -> Real:
-    return np.where(frf.rounding_error < 1, frf.rounding_error + frf.mesh_error, 0.0)
+    return np.where(frf.rounding_bound < 1, frf.rounding_bound + frf.mesh_error, 0.0)
 
 
 def _decibel(relative_error: Real) -> Real:

@@ -55,7 +55,7 @@ def target_modes(model: Model, asked: Any, coordinates: tuple[str, str]) -> Targ
         mode=chosen + 1,
         rank=rank,
         frequency=f,
-        rounding=found.rounding_error[chosen],
+        rounding=found.rounding_bound[chosen],
         damping_ratio=ratio,
         separation=_separation(found.frequency[seen])[rank],
         highest_peak=peak / (2 * np.pi * f) ** 2,

@@ -106,7 +106,7 @@ class EnergyPassage(CoupledPassage):
         """
         system, h = self.system, block.h
         way = np.diff(Q, axis=0)
-        time = block.begin + h * np.arange(block.number + 1)
+        time = block.begin + h * np.arange(block.number + 1.0)
         given = np.zeros(block.number)
         for push, force in zip(system.push, system.pushes):
             if not isinstance(force, float):

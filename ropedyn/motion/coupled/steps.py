@@ -54,7 +54,7 @@ class Stepper:
         if self._step is None or self._step[0] != h:
             self._step = h, ConstantStep.of(system.modes, h)
         step = self._step[1]
-        added = system.added(begin + h * np.arange(number + 1))
+        added = system.added(begin + h * np.arange(number + 1.0))
         state, pushed, force = (
             np.concatenate([one[None], np.zeros((number, *one.shape))])
             for one in (self.state, self.pushed, self.force)

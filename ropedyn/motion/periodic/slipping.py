@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -179,7 +179,7 @@ def _by_steps(
 
 
 def _settled(
-    asked: SteppedSine, rows: list[Goes], frequency: float, turn: int
+    asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: int
 ) -> tuple[Complex, float]:
     """Return the amplitudes when they stay, and what is left."""
     periods = math.ceil(WINDOW / turn) * turn

@@ -187,9 +187,9 @@ def component_motion(
     """Take more modes until those left out do not show, where there are endless many."""
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
     if tension_of(run.model, component) is not None or not _is_smooth(run):
-        system = CoupledSystem.coupled(run, component, points, looks)
-        passage = StretchedPassage if system.is_plain else CoupledPassage
-        return agree(system, tolerance, run, passage)
+        coupled = CoupledSystem.coupled(run, component, points, looks)
+        passage = StretchedPassage if coupled.is_plain else CoupledPassage
+        return agree(coupled, tolerance, run, passage)
     asked = LawQuestion(component, laws_on(run.model, component), points, looks)
     count = MODES
     while True:

@@ -15,6 +15,7 @@ from ...chain.port import Point
 from ...eigen.modes import Modes
 from ...eigen.spectrum import in_hertz
 from ...model import Model
+from ...response.harmonic import solve_harmonic
 from ...scene.damping import StiffnessDamping
 from ...scene.described import Described
 from ...scene.end import End
@@ -78,7 +79,7 @@ class Drawn:
         found = []
         for f in self.lines.tolist():
             try:
-                frf = model.frf(f, drive=drive, response=response)
+                frf = solve_harmonic(model, f, drive=drive, response=response, tight=False)
                 found.append((frf.value[0, 0], frf.rounding_limit[0, 0]))
             except SolveError:
                 found.append((np.nan, np.nan))
@@ -91,7 +92,7 @@ class Drawn:
 
 def counts(drawn: Drawn) -> list[str]:
     """Hold the count between two modes against their number."""
-    value, error = in_hertz(drawn.modes[0].eigenvalue), drawn.modes[0].rounding_error
+    value, error = in_hertz(drawn.modes[0].eigenvalue), drawn.modes[0].rounding_bound
     wrong = []
     for k, (low, high) in enumerate(zip((value + error)[:-1], (value - error)[1:]), 1):
         middle = float(low + high) / 2
@@ -104,7 +105,7 @@ def counts(drawn: Drawn) -> list[str]:
 
 def cuts(drawn: Drawn) -> list[str]:
     """Hold modes and lines of a rope against those of the same rope cut elsewhere."""
-    whole, cut = ((in_hertz(one.eigenvalue), one.rounding_error) for one in drawn.modes)
+    whole, cut = ((in_hertz(one.eigenvalue), one.rounding_bound) for one in drawn.modes)
     lines = [drawn.answers(model, *drawn.points) for model in drawn.models]
     return _apart("mode", range(1, MODES + 1), whole, cut) + _apart("cut line", drawn.lines, *lines)
 
@@ -129,7 +130,7 @@ def passivity(drawn: Drawn) -> list[str]:
 def energy(drawn: Drawn) -> list[str]:
     """Hold each eigenvalue against the energies of the parts: it grows as all stiffness does."""
     modes = drawn.modes[0]
-    hertz, error = in_hertz(modes.eigenvalue), modes.rounding_error
+    hertz, error = in_hertz(modes.eigenvalue), modes.rounding_bound
     total = np.zeros(MODES)
     bound = 4 * math.pi**2 * error * (2 * np.abs(hertz) + error)
     for path, share in _stiffnesses(drawn.scene):
