@@ -146,6 +146,13 @@ class FRF(Curves):
 
         Some hundred times the error, and known in about the time of the response; what has no other
         error than that, as an answer from a file, gives `rounding_error`.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> frf = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile().frf(90.0, drive=("z", 0.4))
+        >>> bool(frf.rounding_error < frf.rounding_bound < 1e-12)
+        True
         """
         return self.rounding_error if self.solve_bound is None else self.solve_bound()
 

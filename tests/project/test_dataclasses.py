@@ -6,7 +6,7 @@ from pathlib import Path
 import ropedyn as rd
 
 ARRAYS = {"Real", "Complex", "Index", "Flags", "Integer", "NDArray"}
-CHANGED = {"_Walk", "Cloud", "_Descent", "Shared", "Branch", "Passage", "Path", "Agreed", "Regions"}
+CHANGED = {"_Walk", "Cloud", "_Descent", "Shared", "Branch", "Path", "Agreed", "Regions"}
 CHANGED |= {"_Motions"}
 """What holds the state of an iteration, and is changed by it."""
 

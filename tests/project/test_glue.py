@@ -246,7 +246,23 @@ OTHERS = {
     "space_apply": lambda _: _core.space_apply(*BLOCKS, FIXED, False, SOLVED),
     "space_iterate": lambda _: _core.space_iterate(*BLOCKS, FIXED, False, *FACTORED, SOLVED, 2),
     "space_count": lambda _: _core.space_count(SPACE, PLANE, np.array([1e4, 1e6]), SCALE),
+    "eliminate": lambda _: eliminated(np.longdouble),
+    "substitute": lambda _: substituted(np.clongdouble),
 }
+
+
+def eliminated(kind):
+    """Two systems of two rows, beside a right side."""
+    matrix = np.array([[[2, 1, 3], [4, 1, 5]], [[0, 1, 2], [1, 0, 4]]], dtype=kind)
+    _core.eliminate(matrix, 2)
+    return matrix
+
+
+def substituted(kind):
+    matrix = eliminated(kind)
+    x = matrix[:, :, 2:].copy()
+    _core.substitute(matrix, x)
+    return x
 
 
 # entry points and the chains that they are tried with
@@ -445,6 +461,21 @@ for field in ("flexibility", "mass", "stiffness", "held", "hinge"):
 # malformed arguments beside the chain
 NODE, ROW = PORT
 REFUSED = {
+    "double numbers to eliminate": (
+        lambda: _core.eliminate(np.ones((1, 2, 2)), 1),
+        TypeError,
+        "A must be a contiguous array of longdouble or clongdouble with three axes",
+    ),
+    "more columns to eliminate than there are": (
+        lambda: _core.eliminate(np.ones((1, 2, 3), np.longdouble), 3),
+        ValueError,
+        "columns must be from 0 to 2, got 3",
+    ),
+    "a real right side of complex rows": (
+        lambda: _core.substitute(eliminated(np.clongdouble), np.ones((2, 2, 1), np.longdouble)),
+        ValueError,
+        "x must have 2 lines of at most 2 rows and numbers as A",
+    ),
     "no arguments": (_core.frf, TypeError, "4 arguments"),
     "one argument less": (lambda: _core.frf(CHAIN, FACTOR, PORT), TypeError, "4 arguments"),
     "one argument more": (lambda: _core.triples(CHAIN, 1), TypeError, "1 argument"),
