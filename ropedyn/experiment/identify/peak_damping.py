@@ -26,6 +26,7 @@ from .notes import Data, notes_of
 
 STEP = 1e-4  # Of central differences in the logarithm of a number: off by a square of it.
 ALIKE = 1e-5  # Numbers that act alike to this share are not told apart.
+ROUNDED = 4 * np.finfo(float).eps  # Of a ratio, which is a part of an eigenvalue of size 1.
 LIGHT = 0.05  # Up to this ratio damping is nearly linear in its numbers.
 SMALL = 1e-3  # A number starts with no less than this part of what it was tried with.
 MOST_TRIES = 40
@@ -140,17 +141,21 @@ class _RatioMisfit:
         off = (self.model.ratios(u) - self.measured) / self.weight
         ways = [self.model.ratios(u + way * h) for h in STEP * np.eye(len(u)) for way in (1, -1)]
         slope = (np.array(ways[::2]) - np.array(ways[1::2])).T / (2 * STEP * self.weight[:, None])
-        return np.where(self.used, off, 0.0), _told(np.where(self.used[:, None], slope, 0.0))
+        noise = np.linalg.norm((ROUNDED / STEP / self.weight)[self.used])
+        told = _told(np.where(self.used[:, None], slope, 0.0), float(noise))
+        return np.where(self.used, off, 0.0), told
 
 
-def _told(slope: Real) -> Real:
+def _told(slope: Real, noise: float) -> Real:
     """Return slopes without directions in which numbers are alike but for their differences."""
     size = np.linalg.norm(slope, axis=0)
     size = np.where(size > 0, size, 1.0)
     of_rows, share, direction = np.linalg.svd(slope / size, full_matrices=False)
-    if share[-1] > ALIKE * share[0]:
+    # the slope of what damps next to nothing is the first to drown in rounding
+    told = share > max(ALIKE * share[0], noise / float(size.min()))
+    if told.all():
         return slope
-    return np.asarray((of_rows * np.where(share > ALIKE * share[0], share, 0.0)) @ direction * size)
+    return np.asarray((of_rows * np.where(told, share, 0.0)) @ direction * size)
 
 
 @dataclass(frozen=True, eq=False)
