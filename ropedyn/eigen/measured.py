@@ -21,11 +21,12 @@ from ..chain.port import cut, stops
 from ..chain.wide import FINE, SEEDS, SPARE, SURE, Number, as_real, moved, narrow, wide_of
 from ..chain.wide_parts import inverse
 from ..chain.witness import Loads, respond
-from .spectrum import error_in_hertz
+from .spectrum import error_in_hertz, in_hertz
 
 Array = Any
 
 EPS = float(np.finfo(float).eps)
+HERTZ = 1.25 * EPS  # Rounding of sqrt(lambda)/2 pi: half of eps each, and 0.18 eps of 2 pi itself.
 BESIDE = 2.0**-34  # So far beside an eigenvalue H is looked at, of its size,
 WIDER = 64.0  # or so many times as far as it may be wrong.
 NEARER = 2.0**-44  # The second time, of their size.
@@ -224,6 +225,6 @@ def rounding_of(model: Compiled, which: Index, eigenvalue: Real, bound: Real) ->
             model, component, SoughtRoots(eigenvalue[mine], bound[mine], undamped_factors)
         )
         error[mine] = np.where(np.isnan(told), bound[mine], told)
-    error = error_in_hertz(eigenvalue, error)
+    error = error_in_hertz(eigenvalue, error) + HERTZ * np.abs(in_hertz(eigenvalue))
     error.setflags(write=False)
     return error
