@@ -92,7 +92,7 @@ def _mesh(scene: Scene, rope: SpaceRope, eigenvalue: Real, frequency: Real) -> U
 
 def _again(scene: Scene, shapes: SpaceShapes, points: int | None = None) -> Any:
     """Return what derivatives are computed from."""
-    if not scene.is_spatial:
+    if scene.sags:
         raise SceneError("derivatives and damage are not carried for a rope on its catenary")
     return SpaceSensitivity(shapes)
 

@@ -282,6 +282,8 @@ class Request:
                 self._see_force(system, ports, k, along)
             else:
                 ports.motion[:, k, along] = 1 / z if check.is_end(point) else z
+                # of what is seen of an end that moves by 1, nothing else is rounded
+                ports.motion_doubt[:, k, along] = np.finfo(float).eps * z
         return ports
 
     @staticmethod

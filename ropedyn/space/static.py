@@ -100,9 +100,9 @@ class LoadedPart(NamedTuple):
     @property
     def force(self) -> Real:
         """What the surroundings put on the nodes: p - N u, or where they are held what is left."""
-        D, Q, N, u, f, p = (
-            one[0].real for one in (self.system.D, self.system.Q, self.system.N, *self.field)
-        )
+        system, field = self.system, self.field
+        matrices = (system.D, system.Q, system.N, field.u, field.f, field.load)
+        D, Q, N, u, f, p = (one[0].real for one in matrices)
         held = np.zeros(u.shape)
         held[1:] += f
         held[:-1] += Q @ u[:-1] - f - D.swapaxes(1, 2) @ f

@@ -146,7 +146,6 @@ PUSH = {"drive": AT, "force": rd.Sine(1.0, 9.0)}
     [
         (PUSH | {"method": "modal"}, 'method must be "line" or "auto" for a rope on an axis'),
         (PUSH | {"modes": 4}, "modes must be left out for a rope on an axis"),
-        (PUSH | {"step": 1e-3}, "step must be left out"),
         (PUSH | {"partial": True}, "partial must be left out"),
         (PUSH | {"start": lambda x: x}, "start must be loads at points for a rope on an axis"),
         (PUSH | {"velocity": {"z": abs}}, "velocity must be loads at points"),

@@ -25,6 +25,14 @@ def hung(**more):
     return rd.Scene(rope, gravity=rd.Gravity(), planes="both", **more)
 
 
+def test_a_family_of_hanging_ropes_is_each_of_them():
+    found = hung().family(["linear_density"]).modes([[4.0], [5.1]], 3)
+    for density, frequency in zip((4.0, 5.1), found.frequency):
+        one = hung()
+        alone = one.replace(rope=one.rope.replace(linear_density=density)).compile().modes(3)
+        assert (np.abs(frequency - alone.frequency) <= 2 * alone.rounding_error).all()
+
+
 def test_a_catenary_in_its_plane_and_out_of_it():
     modes = hung().compile().modes(9)
     inside = ["0.20916067570710418489", "0.30394661710384065205", "0.42760080962127135264"]
@@ -208,7 +216,9 @@ REFUSED = {
     'planes must be "both" for a rope with torque': lambda: rd.Scene(
         rd.Rope(1.0, 0.4, bending_stiffness=2.0), torque=1.0
     ),
-    "rope must be straight": lambda: hung().family(["tension"]),
+    "rope must be straight for planning": lambda: rd.plan_measurement(
+        hung(), modes=2, places=[1.0], std=0.2
+    ),
 }
 
 
