@@ -359,7 +359,7 @@ def test_differences_are_those_of_the_measured_frequency():
 def test_errors_are_those_of_mesh_and_rounding():
     modes = STRING.modes(3)
     comparison = rd.compare(modes, rd.Peaks([45.0, 16.0], std=[0.3, 0.1]))
-    expected = (modes.mesh_error + modes.rounding_error)[[2, 0]]
+    expected = (modes.mesh_error + modes.rounding_bound)[[2, 0]]
     np.testing.assert_array_equal(comparison.error, expected)
     # a string without a mesh: k sqrt(T/mu)/2 L; 8 beads are some 4 % low in the third
     limit = np.array([3, 1]) * math.sqrt(TENSION / DENSITY) / (2 * LENGTH)

@@ -24,7 +24,7 @@ def test_shifts_are_those_of_the_rope_with_the_change(shifts):
     assert shifts.frequency == pytest.approx(SCENE.compile().modes(5).frequency, rel=1e-14)
     error = shifts.shift[1, :, 2] - (after.frequency - shifts.frequency)
     # another number of modes is refined from other starts, to the rounding of both
-    assert (np.abs(error) <= 2 * after.rounding_error).all()
+    assert (np.abs(error) <= 2 * after.rounding_bound).all()
 
 
 def test_a_break_is_felt_alike_from_both_ends(shifts):
