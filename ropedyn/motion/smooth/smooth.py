@@ -140,7 +140,7 @@ def agree(
     system: LawSystem, tolerance: float, run: Run, passage: type[LawPassage] = LawPassage
 ) -> Agreed:
     """Halve the steps until two runs agree within the tolerance, and return the finer."""
-    linear, h = system.without_laws(), system.first_step
+    linear, h, time = system.without_laws(), system.first_step, system.looks[0].time
     span, worst = float(system.time[-1] - system.time[0]), np.inf
     coarse: list[Real] | None = None
     apart = np.zeros(0)
@@ -165,7 +165,7 @@ def agree(
             # where velocities turn or contact begins, two runs may agree by chance
             before = apart / system.falls if apart.size else 0.0
             apart = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
-            found.step_error = TIMES * np.maximum(apart, before) + rounding(looked[0], system.time)
+            found.step_error = TIMES * np.maximum(apart, before) + rounding(looked[0], time)
             worst = float((found.step_error / size).max(initial=0.0))
             if worst <= tolerance:
                 return found
@@ -261,13 +261,19 @@ class _Answer:
             return
         seen = [(c, float(x)) for x in self.x for c in component] if len(run.snapshots) else []
         points = [*(run.responses[k] for k in watched), *seen]
-        looks = [OutputTimes(slice(0, len(watched)), run.time, run.order)]
-        looks.append(OutputTimes(slice(len(watched), len(points)), run.snapshots, 0))
+        looks = [
+            OutputTimes(slice(0, len(watched)), run.time, run.order),
+            OutputTimes(slice(len(watched), len(points)), run.snapshots, 0),
+        ]
+        looks = [look for look in looks if look.output.start < look.output.stop]
+        if not looks:
+            return
         found = component_motion(run, component, points, looks)
-        self.value[watched], self.step_error[watched] = found.looked[0], found.step_error
-        self.truncation[watched] = found.truncation
+        if watched:
+            self.value[watched], self.step_error[watched] = found.looked[0], found.step_error
+            self.truncation[watched] = found.truncation
         if seen:
-            self.snapshot[:, :, at] = found.looked[1].T.reshape(-1, len(self.x), len(component))
+            self.snapshot[:, :, at] = found.looked[-1].T.reshape(-1, len(self.x), len(component))
         self.stages, self.modes = self.stages + found.stages, self.modes + found.modes
         self.method = "steps" if found.by_steps else self.method
         if found.error is not None and found.reached < self.reached:
