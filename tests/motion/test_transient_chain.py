@@ -348,7 +348,7 @@ def test_force_between_nodes_moves_a_chain_as_the_sum_over_modes_tells(
     model = scene.compile(elements=4, element=element)
     asked = {
         "drive": [("z", 0.35), ("z", 0.8)],
-        "force": [rd.Sine(1.0, 20.0, phase=0.3), rd.Impulse(0.1, duration=5e-3)],
+        "force": [rd.Sine(1.0, 20.0), rd.Impulse(0.1, duration=5e-3)],
         "response": [("z", 0.35), ("z", 0.3), ("z", 0.5)],
         "quantity": quantity,
     }
@@ -363,7 +363,9 @@ def test_force_between_nodes_moves_a_chain_as_the_sum_over_modes_tells(
 @pytest.mark.parametrize("name", ["F_z", "M_beta"])
 def test_force_between_nodes_leaves_the_internal_forces_of_the_frequency_response(name):
     rope = BEAM.replace(rotary_inertia=1e-4)
-    scene = rd.Scene(rope, tension=100.0, damping=rd.ViscousDamping(100.0))
+    # viscous damping alone leaves rotations, which it does not reach, ringing for seconds
+    damping = (rd.StiffnessDamping(1e-3), rd.ViscousDamping(100.0))
+    scene = rd.Scene(rope, tension=100.0, damping=damping)
     model = scene.compile(elements=4, element="rigid")
     asked = {"drive": ("z", 0.1), "response": [(name, 0.0), (name, 0.25)]}
     history = model.transient(np.linspace(0.0, 4.0, 4001), force=rd.Step(1.0), **asked)
@@ -395,9 +397,9 @@ def test_the_error_of_a_chain_counts_in_what_its_elements_cause(element, method)
     push = {"drive": ("z", 0.3), "force": rd.Sine(1.0, 70.0), "response": ("z", 0.6)}
     exact = scene.compile().transient(time, **push).value
     model = scene.compile(elements=8, element=element)
-    history = model.transient(time, **push, method=method)
+    history = model.transient(time, **push, method=method, tolerance=1e-4)
     wrong, largest = np.abs(history.value - exact), np.abs(exact).max()
-    # 8 and 42 % where the steps alone are right to 6e-5
+    # 8 and 42 % where the motion of the elements is known to 1e-4
     assert history.error.max() < 1e-4 * largest < 0.05 * wrong.max()
     assert (history.total_error >= wrong).all()
     assert (history.total_error <= wrong + 2 * history.error + 1e-5 * largest).all()
