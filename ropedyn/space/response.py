@@ -40,6 +40,10 @@ def checked_points(
     for k, one in enumerate(given if several else (given,)):
         called = f"{name}[{k}]" if several else name
         if check.is_end(one) and not seen:
+            if scene.rope.axis is not None and scene.rope.axis.closed:
+                raise SceneError(
+                    f"{called} must not be an end of an axis that is closed: it has none"
+                )
             found.append(moved_end(scene, one, called))
             continue
         own, wires = (scene.coordinates, scene.rope.length), wires_of(scene) if seen else None
@@ -266,7 +270,7 @@ class Request:
             node,
             motion,
             np.zeros(motion.shape),
-            np.maximum(node - 1, 0),
+            (node - 1) % system.parts if system.closed else np.maximum(node - 1, 0),
             np.zeros_like(motion),
             np.zeros(motion.shape),
         )
@@ -290,10 +294,10 @@ class Request:
     def _see_force(system: Assembly, ports: SpacePorts, k: int, along: int) -> None:
         """See what the rope right of a node puts on the part left of it, of the first on the end.
 
-        That is f_a = F^T f_b - Q u_a.
+        On the end that is f_a = F^T f_b - Q u_a. Left of the first of what is closed is the last.
         """
         over = 1 / system.z[:, along, None]
-        if ports.node[k] > 0:
+        if system.closed or ports.node[k] > 0:
             ports.force[:, k, along] = over[:, 0]
             return
         D, Q = system.D[:, 0], system.Q[:, 0]

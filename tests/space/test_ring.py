@@ -83,6 +83,26 @@ def test_where_a_ring_is_cut_changes_nothing(share):
         assert np.abs(one[k]).max() > 1e6 * one[4][k - 2].max()
 
 
+@pytest.mark.parametrize("share", [0.1, 0.7, 0.95])
+def test_forces_inside_a_ring_are_those_on_the_left_wherever_it_is_cut(share):
+    answers = []
+    for shift in (0.0, share * LENGTH):
+        standing, at = parts(shift)
+        model = ring(parts=standing, damping=rd.RayleighDamping(1.0, 1e-6))
+        seen = [(c, at(s)) for c in ("F_y", "F_z", "M_beta") for s in (0.0, 0.2, 0.3, 0.55)]
+        drive = [("z", at(0.3)), ("y", at(0.55)), ("x", at(0.0))]
+        answers.append(model.frf([10.0, 33.0, 120.0], drive=drive, response=seen))
+    one, other = answers
+    limit = one.rounding_limit + other.rounding_limit
+    assert (np.abs(one.value - other.value) <= limit).all()
+    assert limit.max() <= 1e-10 * np.abs(one.value).max()
+
+
+def test_a_ring_has_no_end_to_move():
+    with pytest.raises(rd.SceneError, match="drive must not be an end of an axis that is closed"):
+        ring().frf([10.0], drive=("end", 0, "y"), response=("y", 1.0))
+
+
 def test_a_ring_that_is_held_at_one_place_is_an_arc_with_both_ends_there():
     held = [rd.Support(0.0, coordinate=c) for c in ring().coordinates]
     arc = rd.Rope(
