@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property, wraps
+from functools import cached_property, partial, wraps
 from typing import Any, Generic, ParamSpec, Self, TypeVar, cast, overload
 
 Value = TypeVar("Value")
@@ -128,6 +128,14 @@ class Late:
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how the answer is made again."""
         return _same, (self.compute(),)
+
+
+class LateCall(Late):
+    """What is asked for its answer and stays a call; it is pickled as one that knows it."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return how a call with that answer is made."""
+        return partial, (_same, self.compute())
 
 
 def _same(answer: Any) -> Any:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..base import check
 from ..base.answer import Cost
 from ..base.array import Complex, Flags, Real
-from ..base.computed import Late
+from ..base.computed import Late, LateCall
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES
 from ..chain import tip
@@ -100,7 +100,7 @@ def solve_harmonic(
         ),
         mesh=mesh,
         rounding=Late(rounding),
-        solve_bound=lambda: relative(value, of_value(got.bound())),
+        solve_bound=LateCall(lambda: relative(value, of_value(got.bound()))),
         solve_rates=partial(
             FrequencyRates, model, omega, drives, responses, got.answered, got.value
         ),
