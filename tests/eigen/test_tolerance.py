@@ -109,7 +109,7 @@ def test_chosen_chain_meets_the_tolerance_and_a_little_smaller_one_fails(name, e
     # the rounding of the continuous frequencies is in what was chosen by
     exact = scene.compile().modes(below=BELOW)
     moving = signed(exact) != 0
-    rounding = (exact.rounding_error[moving] / np.abs(signed(exact)[moving])).max()
+    rounding = (exact.rounding_bound[moving] / np.abs(signed(exact)[moving])).max()
     assert choice.mesh_error == pytest.approx(errors.max(), rel=1e-9, abs=1.01 * rounding)
     failing = [n for n, error in choice.tried if error > tolerance]
     assert max(failing) == pytest.approx(choice.elements, rel=NEAR - 1, abs=1)

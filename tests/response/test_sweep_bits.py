@@ -48,7 +48,7 @@ def same(one, other):
         a.tobytes() == b.tobytes()
         for a, b in (
             (one.value, other.value),
-            (one.rounding_error, other.rounding_error),
+            (one.rounding_bound, other.rounding_bound),
         )
     )
 
@@ -83,14 +83,14 @@ def test_order_of_frequencies_changes_no_bit(model):
     order = np.random.default_rng(7).permutation(len(FREQUENCY))
     other = ask(model, FREQUENCY[order], threads=1)
     assert other.value.tobytes() == one.value[:, :, order].tobytes()
-    assert other.rounding_error.tobytes() == one.rounding_error[:, :, order].tobytes()
+    assert other.rounding_bound.tobytes() == one.rounding_bound[:, :, order].tobytes()
 
 
 @pytest.mark.parametrize("part", [slice(0, 1), slice(5, 6), slice(3, 20), slice(40, 73, 3)])
 def test_frequency_alone_or_among_others_has_the_same_bits(model, part):
     one, other = ask(model, threads=1), ask(model, FREQUENCY[part], threads=1)
     assert other.value.tobytes() == one.value[:, :, part].tobytes()
-    assert other.rounding_error.tobytes() == one.rounding_error[:, :, part].tobytes()
+    assert other.rounding_bound.tobytes() == one.rounding_bound[:, :, part].tobytes()
 
 
 def test_repeated_frequencies_have_the_same_bits(model):
