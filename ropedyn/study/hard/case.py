@@ -137,10 +137,11 @@ def _static(model: Model, ask: Ask) -> Numbers:
     coordinate, x = ask["load"]
     static = model.static({(coordinate, x): 1.0}, unstable=ask.get("unstable", False))
     at = np.abs(static.x - x).argmin(), static.coordinates.index(coordinate)
-    # of a long chain the bound at every node takes longer than the answer
-    long = len(model.x) > 1000
-    still = model.frf(0.0, drive=(coordinate, x)).rounding_limit[0] if long else None
-    bound = static.rounding_error[at][None] if still is None else still
+    if len(model.x) <= 1000:
+        bound = static.rounding_error[at][None]
+    else:  # the bound at every node takes longer than the answer
+        still = model.frf(0.0, drive=(coordinate, x))
+        bound = still.rounding_bound[0] * np.abs(still.value[0])
     return Numbers(static.displacement[at][None], bound)
 
 
