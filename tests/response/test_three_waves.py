@@ -70,7 +70,9 @@ def test_hanging_rope_responds_as_the_continuum(kl, tension, stiffness, claim):
 
 def test_lines_beside_others_that_are_not_closed_keep_their_bits():
     model = hanging(1e4, 1e5).compile()
-    f = np.array([0.01, 0.02, 0.1, 0.2, 0.5, 3.0, 7.0, 8.0])  # the first two are not
+    # the first two are not; on the catenary, as higher up, all would be others
+    f = np.array([0.01, 0.02, 0.1, 0.2, 0.5, 0.7])
+    assert f.max() < model.highest
     together = model.frf(f, drive=("z", 40.0)).value
     alone = [model.frf(one, drive=("z", 40.0)).value[..., 0] for one in f]
     assert np.array_equal(together[0], np.array(alone).T[0])
