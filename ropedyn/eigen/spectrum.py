@@ -14,7 +14,7 @@ from ..base import check
 from ..base.answer import Work
 from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
-from ..chain.chain import CHANNELS, Chain
+from ..chain.chain import CHANNELS, CONTINUOUS, TENSED, Chain
 from ..chain.compiled import MOST_STEPS, Compiled, least_of, once, part_of
 from .closed import closed_count, closed_eigenvalues
 
@@ -166,8 +166,12 @@ def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> C
     eigenvalue, error, certified, shape, motion, most, sweeps, redone = _core.certify(
         chain, wanted, _upper(limit), shaped
     )
-    if chain.inertia is not None:
-        error += 16 * np.finfo(float).eps * (chain.section_loss - 1) * np.abs(eigenvalue)
+    if chain.kind in (CONTINUOUS, TENSED):
+        loss = 16 * (chain.section_loss - 1)
+        if chain.kind == TENSED:
+            # half of the digits, 55 times the root at most: the inverse of what a section gives
+            loss = 128 * (math.sqrt(chain.section_loss) - 1)
+        error += np.finfo(float).eps * loss * np.abs(eigenvalue)
     if not np.isfinite(eigenvalue[:most]).all() or not np.isfinite(error[:most]).all():
         raise SolveError("the numbers of the modes overflow: check the units")
     return ComponentModes(

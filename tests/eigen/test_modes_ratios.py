@@ -103,7 +103,13 @@ def test_any_torsional_stiffness_with_lay(ratio, element):
     rope = ROPE.replace(torsional_stiffness=0.15 * ratio, polar_inertia=1e-6, lay_slope=0.3)
     # a section without torsional stiffness twists instead of bending: six frequencies within 1e-4
     # of each other, whose gaps counts tell apart to 1e-9
-    modes_of(rd.Scene(rope, tension=100.0), element, 1e-9 if ratio < 1e-9 else 2e-12)
+    scene = rd.Scene(rope, tension=100.0)
+    relative = 1e-9 if ratio < 1e-9 else 2e-12
+    if element == "tensed":
+        # the inverse of such a section loses half of the digits of its determinant, times 55
+        loss = scene.compile(elements=N, element=element).chain.section_loss
+        relative += 128 * np.finfo(float).eps * math.sqrt(loss)
+    modes_of(scene, element, relative)
 
 
 @ELEMENTS
