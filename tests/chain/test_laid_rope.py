@@ -54,7 +54,9 @@ def test_pulled_rope_stretches_and_turns_as_its_section(end, element, n, solver,
     if end is SLIDES:
         claim(abs(static.force[-1, 1] / torque - 1))
     # between the ends nothing is put on it
-    assert np.abs(static.force[1:-1]).max(initial=0.0) <= bound(static) * PULL
+    # as the model itself says it: assembled, the sums of a fine chain are of large numbers
+    between = np.abs(static.force[1:-1])
+    assert (between <= np.maximum(bound(static) * PULL, static.force_rounding_error[1:-1])).all()
 
 
 @pytest.mark.parametrize(("element", "n"), ELEMENTS)
