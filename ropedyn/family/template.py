@@ -15,6 +15,7 @@ from ..base.array import Real
 from ..base.errors import SceneError
 from ..chain.compile import compile_scene
 from ..chain.compiled import Compiled, refuse_nonlinear
+from ..scene.agree import refuse_inclined
 from ..scene.end import End, end_of
 from ..scene.path import value_at, with_values
 from ..scene.scene import Scene
@@ -68,6 +69,7 @@ class Template(NamedTuple):
 
 def template(scene: Scene, paths: Iterable[str]) -> Template:
     """Check that paths lead to numbers of a scene, each once."""
+    refuse_inclined(scene, "a family or a fit")
     if isinstance(paths, str):
         raise TypeError(f'paths must be a list such as ["tension"], got {paths!r}')
     named = tuple(_known(scene, path) for path in paths)

@@ -45,13 +45,18 @@ def refuse_axis(scene: Described, what: str) -> None:
     """Refuse what is known of straight ropes alone."""
     if scene.rope.axis is not None:
         raise SceneError(f"rope must be straight for {what}, got one on an axis")
+    refuse_inclined(scene, what)
+    if scene.is_spatial:
+        raise SceneError(f"torque, principal_angle and wound wires must be left out for {what}")
+
+
+def refuse_inclined(scene: Described, what: str) -> None:
+    """Refuse a rope that has no parabola, but its catenary alone."""
     if scene.sags and scene.is_graded:
         raise SceneError(
             f"sag or own_weight must be False for {what}, got gravity that both curves a rope and "
             "changes its tension along it"
         )
-    if scene.is_spatial:
-        raise SceneError(f"torque, principal_angle and wound wires must be left out for {what}")
 
 
 def in_space(scene: Described) -> str:
