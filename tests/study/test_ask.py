@@ -226,7 +226,7 @@ def test_rigid_motion_has_no_relative_rounding_error():
     rounding = rd.ask.modes(4).rounding(modes)
     assert (rounding[modes.frequency == 0] == 0).all()
     moving = modes.frequency > 0
-    relative = modes.rounding_error[moving] / modes.frequency[moving]
+    relative = modes.rounding_bound[moving] / modes.frequency[moving]
     assert rounding[moving].tolist() == relative.tolist()
 
 
