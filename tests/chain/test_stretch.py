@@ -256,7 +256,7 @@ LAID_PARTS = (rd.LocalChange(0.1, 0.55, **EVERY), rd.AddedMass(0.3, 0.8, 0.2, po
     "FRF and internal forces of a laid rope that changes over stretches, continuous spans: error / "
     "condition",
     reference="mpmath, 60 digits: tests/support/exact_span.py",
-    accepted=7e-14,
+    accepted=5e-14,
 )
 def test_laid_rope_with_stretches_responds_as_the_continuum(claim):
     damping = rd.RayleighDamping(2.0, 1e-5)

@@ -7,7 +7,7 @@ from spans import BOUND, TWISTING, errors
 import ropedyn as rd
 
 EXACT = "mpmath, 60 digits: tests/support/exact_span.py"
-ACCEPTED = 9e-14
+ACCEPTED = 8e-14
 """Of the error over the condition, as of other spans: tests/response/test_continuous_frf.py."""
 TENSION = 60.0
 DAMPINGS = {"rayleigh": rd.RayleighDamping(2.0, 1e-5)}
