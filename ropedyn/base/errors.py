@@ -101,7 +101,7 @@ class ModelWarning(UserWarning):
     ...     warnings.simplefilter("always")
     ...     modes = model.modes(1)
     >>> told[0].category is rd.ModelWarning, str(told[0].message).partition(",")[0]
-    (True, 'the parabola of a rope that sags is off by up to 0.34 of a frequency')
+    (True, 'free motion is that of a parabola')
     """
 
 
