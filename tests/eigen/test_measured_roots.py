@@ -1,6 +1,6 @@
 """`rounding_error` of modes and damped modes against roots in 60 digits, from the scene's numbers.
 
-Where the receptance of a point is infinite its inverse has a root, which Newton's secant finds.
+They are where the receptance of a point is infinite.
 """
 
 import mpmath
@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import EPS
 from exact_chain import DIGITS, Exact
+from exact_roots import pole
 from exact_scene import places
 from exact_span import Continuum, coupled
 from random_scene import damped, taut_scene
@@ -30,13 +31,11 @@ def model_of(seed):
     return scene.compile(elements=max(10, len(set(places(scene))) + 1)), is_damped
 
 
-def receptance_of(model):
-    """z at a point per force there, of omega."""
+def exact_of(model):
+    """The model in many digits, and the point whose receptance is asked."""
     if model.element == "continuous":
-        exact = Continuum(model.scene, coupled(model.scene, "z"))
-        return lambda omega: exact.receptance(omega, ("z", AT), [("z", AT)])[0]
-    exact, node = Exact(model, model.component_of("z")), int(np.abs(model.x - AT).argmin())
-    return lambda omega: exact.receptance(omega, ("z", node), [("z", node)])[0]
+        return Continuum(model.scene, coupled(model.scene, "z")), ("z", AT)
+    return Exact(model, model.component_of("z")), ("z", int(np.abs(model.x - AT).argmin()))
 
 
 def errors(seed):
@@ -48,16 +47,14 @@ def errors(seed):
         return []
     found = []
     with mpmath.workdps(DIGITS):
-        h = receptance_of(model)
+        exact, port = exact_of(model)
         rates = modes.eigenvalue if is_damped else 2j * np.pi * modes.frequency
         for s, error in zip(rates, 2 * np.pi * modes.rounding_error):
             if s == 0:
                 continue
             start = -1j * mpmath.mpmathify(complex(s))
             try:
-                omega = mpmath.findroot(
-                    lambda omega: 1 / h(omega), (start, start * (1 + 1e-12)), tol=1e-60, maxsteps=8
-                )
+                omega = pole(exact, port, start)
             except (ValueError, ZeroDivisionError):
                 continue
             # that of another mode, where this one stands still at the point

@@ -69,6 +69,36 @@ def frequency(exact, near, within=1e-6):
         return mpmath.sqrt(eigenvalue(exact, square, within)) / (2 * mpmath.pi)
 
 
+def pole(exact, port, near, within=1e-9):
+    """Return the pole of a point's own receptance next to a good one [rad/s], to 30 digits.
+
+    Raises
+    ------
+    ValueError, ZeroDivisionError
+        If the secant method of the receptance's inverse does not end.
+    """
+    with mpmath.workdps(DIGITS):
+        digit = mpf(10) ** round(log10(within * abs(near)))
+        return _pole(
+            exact, port, mpmath.mpc(*(mpmath.nint(x / digit) * digit for x in parts(near)))
+        )
+
+
+def parts(number):
+    """Real and imaginary part."""
+    return mpmath.re(number), mpmath.im(number)
+
+
+@stored
+def _pole(exact, port, near):
+    with mpmath.workdps(DIGITS):
+        return _secant(
+            lambda omega: 1 / exact.receptance(omega, port, [port])[0],
+            near,
+            near * (1 + mpf(10) ** -12),
+        )
+
+
 @stored
 def sensitivity(exact, value):
     """Return |lambda| + the sum of |d lambda/d ln p| over p = section, tension, springs.
