@@ -28,7 +28,8 @@ enum rd_status rd_frf_prepare(const struct rd_chain *chain, const struct rd_port
 /* The elements are assembled again at each frequency, since sections and tension of a tensed element
    are one matrix: what is `elastic` elsewhere is their real part here, `string` the imaginary one.
    part: what of the five makes the real and the imaginary part of D */
-static enum rd_status factorise(struct rd_frf *frf, const double _Complex *factor)
+static enum rd_status factorise(struct rd_frf *frf, const double _Complex *factor,
+                                const struct rd_stop *stop)
 {
     const struct rd_system *system = &frf->system;
     const size_t reach = system->reach;
@@ -57,6 +58,8 @@ static enum rd_status factorise(struct rd_frf *frf, const double _Complex *facto
         };
         rd_band_fill(&system->assembly, part[k], system->number, &band);
     }
+    if (rd_stop_is_asked(stop))
+        return RD_INTERRUPTED;
     const int n = (int)system->free;
     const int info = LAPACKE_zgbtrf_work(LAPACK_COL_MAJOR, n, n, (int)reach, (int)reach,
                                          frf->matrix, (int)leading, frf->pivot);
@@ -121,11 +124,14 @@ static double motion_of(struct rd_frf *frf, const double *size, size_t drive)
 }
 
 enum rd_status rd_frf_solve(struct rd_frf *frf, const double _Complex *factor,
-                            double _Complex *value, double *rounding, double *motion)
+                            const struct rd_stop *stop, double _Complex *value, double *rounding,
+                            double *motion)
 {
-    const enum rd_status status = frf->system.free > 0 ? factorise(frf, factor) : RD_OK;
+    const enum rd_status status = frf->system.free > 0 ? factorise(frf, factor, stop) : RD_OK;
     if (status != RD_OK)
         return status;
+    if (rd_stop_is_asked(stop))
+        return RD_INTERRUPTED;
     if (frf->system.free > 0)
         solve(frf);
     const double size[RD_PARTS] = {
@@ -138,6 +144,8 @@ enum rd_status rd_frf_solve(struct rd_frf *frf, const double _Complex *factor,
     const size_t responses = frf->responses.count;
     for (size_t d = 0; d < frf->drives.count; d++) {
         const double *u = (const double *)(frf->solution + d * frf->system.free);
+        if (rd_stop_is_asked(stop))
+            return RD_INTERRUPTED;
         motion[d] = motion_of(frf, size, d);
         for (size_t r = 0; r < responses; r++) {
             const double re = rd_port_read(&frf->system, &frf->responses, r, 2, u);

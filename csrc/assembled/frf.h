@@ -4,6 +4,7 @@
 
 #include "assembled/system.h"
 #include "base/complex.h"
+#include "base/stop.h"
 
 struct rd_frf {
     const struct rd_chain *chain;
@@ -28,8 +29,9 @@ enum rd_status rd_frf_prepare(const struct rd_chain *chain, const struct rd_port
        motion (drives)               the estimated relative error of the whole motion: 1 or more
                                      where no digit is left, as on an undamped resonance
    RD_SINGULAR where the factorisation meets an exact zero, RD_CRITICAL_ELEMENT where an element has
-   no stiffness. */
+   no stiffness, RD_INTERRUPTED where `stop` is asked between two passes over the nodes. */
 enum rd_status rd_frf_solve(struct rd_frf *frf, const double _Complex *factor,
-                            double _Complex *value, double *rounding, double *motion);
+                            const struct rd_stop *stop, double _Complex *value, double *rounding,
+                            double *motion);
 
 #endif

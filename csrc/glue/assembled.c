@@ -5,10 +5,7 @@
 #include "assembled/deflection.h"
 #include "assembled/frf.h"
 
-enum {
-    ARRAYS = 7,
-    SLICE = 1 << 16, /* nodes times frequencies between two looks for Ctrl-C */
-};
+enum { ARRAYS = 7 };
 
 PyObject *py_assemble(PyObject *module, PyObject *arguments)
 {
@@ -90,20 +87,21 @@ done:
     return result;
 }
 
-/* solves frequencies start ... stop - 1; the index of the one that failed, or stop */
-static npy_intp solve(struct rd_frf *frf, const struct py_response *response, double *motion,
-                      npy_intp start, npy_intp stop)
+/* solves one frequency after the other; the index of the one that failed or was left, or count */
+static npy_intp solve(struct rd_frf *frf, const struct py_response *response,
+                      const struct rd_stop *stop, double *motion)
 {
     const npy_intp drives = (npy_intp)frf->drives.count;
     const npy_intp size = drives * (npy_intp)frf->responses.count;
     const double _Complex *factor = PyArray_DATA(response->factor);
     double _Complex *value = PyArray_DATA((PyArrayObject *)response->value);
     double *rounding = PyArray_DATA((PyArrayObject *)response->error);
-    for (npy_intp i = start; i < stop; i++)
-        if (rd_frf_solve(frf, factor + i * RD_PARTS, value + i * size, rounding + i * size,
-                         motion + i * drives) != RD_OK)
-            return i;
-    return stop;
+    npy_intp i = 0;
+    while (i < response->count && !rd_stop_is_asked(stop) &&
+           rd_frf_solve(frf, factor + i * RD_PARTS, stop, value + i * size, rounding + i * size,
+                        motion + i * drives) == RD_OK)
+        i++;
+    return i;
 }
 
 /* how many frequencies were solved before one failed, or -1 and an exception */
@@ -114,31 +112,19 @@ static npy_intp solve_all(PyObject *module, const struct py_response *response, 
     const struct rd_ports *responses = &response->responses.ports;
     struct rd_workspace workspace = {0};
     struct rd_frf frf;
-    const npy_intp count = response->count;
-    const npy_intp slice = 1 + SLICE / (npy_intp)chain->nodes;
     npy_intp solved = -1;
     rd_frf_prepare(chain, drives, responses, &frf, &workspace);
     if (py_workspace_allocate(&workspace) < 0)
         goto done;
-    enum rd_status status;
-    Py_BEGIN_ALLOW_THREADS
-    status = rd_frf_prepare(chain, drives, responses, &frf, &workspace);
-    Py_END_ALLOW_THREADS
-    if (status != RD_OK) {
+    struct py_watch watch;
+    const struct rd_stop stop = py_watch_begin(&watch);
+    const enum rd_status status = rd_frf_prepare(chain, drives, responses, &frf, &workspace);
+    if (status == RD_OK)
+        solved = solve(&frf, response, &stop, motion);
+    if (py_watch_end(&watch) < 0)
+        solved = -1;
+    else if (status != RD_OK)
         py_raise(module, status);
-        goto done;
-    }
-    solved = 0;
-    for (npy_intp start = 0; start < count; start = solved) {
-        const npy_intp stop = start + slice < count ? start + slice : count;
-        Py_BEGIN_ALLOW_THREADS
-        solved = solve(&frf, response, motion, start, stop);
-        Py_END_ALLOW_THREADS
-        if (PyErr_CheckSignals() < 0)
-            solved = -1;
-        if (solved < stop)
-            break;
-    }
 done:
     PyMem_RawFree(workspace.base);
     return solved;

@@ -179,7 +179,9 @@ static void by_assembled_system(const struct rope *rope, const struct rd_ports *
     for (size_t i = 0; i < POINTS; i++) {
         complex_t factor[RD_PARTS];
         factors_at(omega_of(i), factor);
-        CHECK_INT(rd_frf_solve(&frf, factor, value + i * PORTS * PORTS, rounding, motion), RD_OK);
+        CHECK_INT(rd_frf_solve(&frf, factor, &(struct rd_stop){0}, value + i * PORTS * PORTS,
+                               rounding, motion),
+                  RD_OK);
     }
     free(space.base);
 }

@@ -41,7 +41,7 @@ static void ready_make(struct ready *ready, struct rope rope, const struct rd_po
 static enum rd_status solve(struct ready *ready, const complex_t *factor, complex_t *value,
                             double *rounding)
 {
-    return rd_frf_solve(&ready->frf, factor, value, rounding, ready->motion);
+    return rd_frf_solve(&ready->frf, factor, &(struct rd_stop){0}, value, rounding, ready->motion);
 }
 
 static void ready_free(struct ready *ready)
@@ -372,6 +372,35 @@ static void short_memory_is_refused_at_every_size(void)
     rope_free(&rope);
 }
 
+static void whoever_asks_to_stop_is_heard(void)
+{
+    const struct recipe recipe = {
+        .elements = 3,
+        .coordinates = "z",
+        .length = 1.0,
+        .tension = 300,
+        .inertia = {[RD_Z] = 0.1},
+        .left = "z",
+        .right = "",
+    };
+    struct ready ready;
+    ready_make(&ready, rope_make(&recipe), &at_right_end, &at_right_end);
+    const complex_t factor[RD_PARTS] = {1, 1, 1, -400.0};
+    int questions = 0;
+    for (int late = 1; late < 10 && questions == 0; late++) {
+        complex_t value;
+        double rounding;
+        int left = late;
+        const struct rd_stop stop = {says_yes, &left};
+        const enum rd_status status =
+            rd_frf_solve(&ready.frf, factor, &stop, &value, &rounding, ready.motion);
+        CHECK_INT(status, left == 0 ? RD_INTERRUPTED : RD_OK);
+        questions = status == RD_OK ? late : 0;
+    }
+    CHECK_INT(questions, 4); /* one more than between assembly, factors, columns and the adjoint */
+    ready_free(&ready);
+}
+
 int main(void)
 {
     one_mass_is_the_textbook_oscillator();
@@ -384,6 +413,7 @@ int main(void)
     value_is_laid_out_drive_by_drive();
     exact_resonance_is_singular();
     held_chain_does_not_move();
+    whoever_asks_to_stop_is_heard();
     short_memory_is_refused_at_every_size();
     return check_report("test_frf");
 }

@@ -191,14 +191,6 @@ static void dislocations_and_forces_are_reciprocal(void)
     free(workspace.base);
 }
 
-/* says yes from one question on, and for ever after */
-static bool says_yes(void *context)
-{
-    int *left = context;
-    *left -= *left > 0;
-    return *left == 0;
-}
-
 /* lines and deflections end with whatever they are in: factors, substitutions, what is left */
 static void whoever_asks_to_stop_is_heard(void)
 {
