@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from ..base import check
 from ..base.array import Index, Real
 from ..base.errors import SceneError
+from .catenary import catenaries, checked_loads, placed
 from .piece import CatenaryPiece, Piece, UniformPiece
 from .polyline import checked_points, polyline
 
@@ -259,8 +260,10 @@ class Axis:
         return _placed(UniformPiece(long, sign * s * c / r, c * c / r), kind="helix", **words)
 
     @staticmethod
-    def catenary(span: float, rise: float = 0.0, *, parameter: float) -> Axis:
-        """Return a catenary above X, which hangs towards -Z.
+    def catenary(
+        span: float, rise: float = 0.0, *, parameter: float, loads: Iterable[Any] = ()
+    ) -> Axis:
+        """Return a catenary above X, which hangs towards -Z; at weights on it it has kinks.
 
         Parameters
         ----------
@@ -270,6 +273,9 @@ class Axis:
             Of the right end above the left one [m].
         parameter : float
             Horizontal tension over weight per length, H/w [m].
+        loads : iterable of (float, float), optional
+            Weights that hang on it: the place as a share of the arc length, and how many metres
+            of the rope weigh as much, m/mu [m].
 
         Raises
         ------
@@ -277,7 +283,7 @@ class Axis:
             If something is not a number.
         SceneError
             If something is not finite, or not positive where it must be, or the axis would be
-            longer than numbers are.
+            longer than numbers are, or no pieces are found that hang so.
 
         Examples
         --------
@@ -285,20 +291,19 @@ class Axis:
         >>> axis = rd.Axis.catenary(100.0, 30.0, parameter=200.0)
         >>> axis.position(axis.length).round(9)
         array([100.,   0.,  30.])
+        >>> loaded = rd.Axis.catenary(100.0, 30.0, parameter=200.0, loads=[(0.5, 20.0)])
+        >>> loaded.position(loaded.length).round(9), len(loaded.kinks)
+        (array([100.,   0.,  30.]), 1)
         """
         over = check.number(span, "span", "m", sign="positive")
         up = check.number(rise, "rise", "m")
         c = check.number(parameter, "parameter", "m", sign="positive")
         if over > 1000 * c or abs(up) > 1e150:
             raise SceneError(f"parameter must be at least span/1000 [m], got {parameter!r}")
-        # cosh(a + b) - cosh(a - b) = 2 sinh a sinh b
-        middle = c * math.asinh(up / c / (2 * math.sinh(over / (2 * c))))
-        first, last = (c * math.sinh((middle + side * over / 2) / c) for side in (-1, 1))
-        piece = CatenaryPiece(last - first, c, first)
-        slope = math.atan2(first, c)
-        frame = np.array([[c, 0, -first], [0, math.hypot(c, first), 0], [first, 0, c]])
+        carried = checked_loads(loads)
         words: dict[str, Any] = {"span": over, "rise": up, "parameter": c}
-        return _axis([(piece, np.zeros(3), frame * math.cos(slope) / c)], kind="catenary", **words)
+        words |= {"loads": [list(one) for one in carried]} if carried else {}
+        return _axis(placed(catenaries(over, up, c, carried)), kind="catenary", **words)
 
     @staticmethod
     def points(xyz: ArrayLike, fillet: float | None = None) -> Axis:
@@ -372,6 +377,18 @@ class Axis:
         array([0., 1., 3.])
         """
         return np.concatenate([[0.0], np.cumsum([piece.length for piece in self.pieces])])
+
+    @property
+    def hangs(self) -> bool:
+        """Whether it is of catenaries, each of which hangs under its own weight.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Axis.arc(1.0, 2.0).hangs, rd.Axis.catenary(9.0, parameter=5.0).hangs
+        (False, True)
+        """
+        return all(isinstance(piece, CatenaryPiece) for piece in self.pieces)
 
     @property
     def kinks(self) -> tuple[Kink, ...]:
@@ -495,6 +512,46 @@ class Axis:
         whole = np.concatenate([[0.0], np.cumsum([one.turned(one.length) for one in self.pieces])])
         return self._each(s, lambda k, at: whole[k] + self.pieces[k].turned(at), ())
 
+    def pull(self, s: ArrayLike) -> Real:
+        """Return the tension over weight per length of what hangs; at a joint that on its right.
+
+        Parameters
+        ----------
+        s : float or array_like
+            Arc lengths [m].
+
+        Returns
+        -------
+        ndarray, shape s.shape
+            [m].
+
+        Raises
+        ------
+        SceneError
+            If one lies beyond the ends, or the axis is none that hangs.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> axis = rd.Axis.catenary(100.0, parameter=200.0)
+        >>> print(round(float(axis.pull(0.0)), 6), axis.pull(axis.length / 2))
+        206.28262 200.0
+        """
+        return self._each(s, lambda k, at: _hanging(self.pieces[k]).pull(at), ())
+
+    @property
+    def mean_pull(self) -> float:
+        """Its mean along what hangs [m].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> print(round(rd.Axis.catenary(100.0, parameter=200.0).mean_pull, 6))
+        202.107189
+        """
+        total = math.fsum(_hanging(one).mean_pull * one.length for one in self.pieces)
+        return total / self.length
+
     def reversed(self) -> Axis:
         """Return the same line from its other end, x and y of its frames turned round.
 
@@ -531,6 +588,12 @@ class Axis:
             here = piece == k
             found[here] = of(k, at[here] - joints[k])
         return found.reshape((*np.shape(s), *shape))
+
+
+def _hanging(piece: Piece) -> CatenaryPiece:
+    if not isinstance(piece, CatenaryPiece):
+        raise SceneError(f"the axis must be a catenary, got {piece}")
+    return piece
 
 
 KINDS = ("line", "arc", "ring", "helix", "catenary", "points")

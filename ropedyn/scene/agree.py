@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..axis.piece import CatenaryPiece
+from ..axis.axis import Axis
+from ..axis.catenary import jumps
 from ..base import check
 from ..base.errors import SceneError
 from ..base.parameter import positions
@@ -91,6 +92,7 @@ def _check_on_axis(scene: Described) -> None:
         _check_closed(scene)
     if hangs is not None:
         _check_hanging(scene, hangs)
+        _check_loads(scene, hangs)
     elif isinstance(scene.tension, Tension) and not (scene.tension.is_constant and axis):
         got = check.shown(scene.tension)
         raise SceneError(f"tension must be one number for {what} [N], got {got}")
@@ -200,7 +202,8 @@ def _check_axial_force(scene: Described) -> None:
 
 def _check_corners(scene: Described) -> None:
     """Refuse what nothing balances at a corner."""
-    kinks = scene.rope.axis.kinks if scene.rope.axis else ()
+    hangs = hanging(scene.rope, scene.gravity) is not None
+    kinks = scene.rope.axis.kinks if scene.rope.axis and not hangs else ()
     corners = [kink.s for kink in kinks if abs(kink.turn[0, 0] - 1) > check.NEAR]
     loads = ("tension", scene.mean_tension, "N"), ("torque", scene.torque, "N m")
     for name, value, unit in loads:
@@ -215,7 +218,7 @@ UNBALANCED = 1e-3
 """Of the weight: more that the forces of bending leave of it is no equilibrium."""
 
 
-def _check_hanging(scene: Described, piece: CatenaryPiece) -> None:
+def _check_hanging(scene: Described, axis: Axis) -> None:
     """Refuse what is not at rest in a catenary."""
     gravity = scene.gravity
     assert gravity is not None
@@ -234,7 +237,7 @@ def _check_hanging(scene: Described, piece: CatenaryPiece) -> None:
             f"tension must be left out, or {wanted!r} N as the catenary and its weight have, got "
             f"{check.shown(scene.tension)}"
         )
-    left = _unbalanced(scene, piece)
+    left = max(_unbalanced(scene, piece) for piece in axis.pieces)
     if left > UNBALANCED:
         raise SceneError(
             'natural must be "axis": a rope that is straight when nothing loads it does not hang '
@@ -242,7 +245,56 @@ def _check_hanging(scene: Described, piece: CatenaryPiece) -> None:
         )
 
 
-def _unbalanced(scene: Described, piece: CatenaryPiece) -> float:
+def _check_loads(scene: Described, axis: Axis) -> None:
+    """Refuse weights on a catenary that hangs as if there were others."""
+    density, long = scene.rope.linear_density, axis.length
+    carried = dict(zip(axis.joints[1:-1], jumps(axis.pieces)))
+    weighs = dict.fromkeys(carried, 0.0)
+    stands: list[Any] = [part for part in scene.parts if getattr(part, "mass", 0.0)]
+    for part in stands:
+        at = min(carried, key=lambda s: abs(s - part.x), default=math.inf)
+        if abs(at - part.x) <= check.NEAR * long:
+            weighs[at] += part.mass
+        elif 0 < part.x < long:
+            raise SceneError(
+                f"parts[{scene.parts.index(part)}] must hang where the axis has its load of "
+                f"{part.mass / density:g} m, which `Axis.catenary(.., loads=)` gives, got none at "
+                f"{part.x!r} m"
+            )
+    for at, load in carried.items():
+        if abs(weighs[at] - load * density) > 1e-9 * density * (load + long):
+            raise SceneError(
+                f"parts must weigh {load * density!r} kg at {at!r} m, as the axis hangs, got "
+                f"{weighs[at]!r} kg"
+            )
+    _check_kinks(scene, axis)
+
+
+ROUND = 1e-3
+"""Of a rope's length: more that bending rounds off at weights is another curve."""
+
+
+def _check_kinks(scene: Described, axis: Axis) -> None:
+    """Refuse bending that rounds off the kinks at weights, over sqrt(B/T) by angle squared."""
+    bending = own_number(scene.rope, "bending_stiffness")
+    if bending is None or not axis.kinks:
+        return
+    if scene.rope.natural == "straight":
+        raise SceneError(
+            'natural must be "axis" of a rope with bending_stiffness that has kinks at weights, '
+            'got "straight"'
+        )
+    turned = [math.acos(min(1.0, kink.turn[0, 0])) ** 2 for kink in axis.kinks]
+    pull = scene.tension_at([kink.s for kink in axis.kinks])
+    rounded = float(np.sum(turned * np.sqrt(bending / pull)) / axis.length)
+    if rounded > ROUND:
+        raise SceneError(
+            f"bending_stiffness must be less for a rope to hang in kinks from weights, got "
+            f"{bending:g} N m^2, which rounds off {rounded:.2g} of its length"
+        )
+
+
+def _unbalanced(scene: Described, piece: Any) -> float:
     """Return what bending leaves of the weight: B kz kz' along, B kz'' across."""
     if scene.rope.natural != "straight" or scene.gravity is None:
         return 0.0

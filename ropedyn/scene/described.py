@@ -145,7 +145,7 @@ class Described(Description):
         for place in places:
             check.position(float(place), "x", self.rope.length)
         if hangs := hanging(self.rope, self.gravity):
-            return self._hung(hangs.pull(np.asarray(x, dtype=np.float64)))
+            return np.asarray(self._hung(hangs.pull(x)))
         if self.rope.axis is not None and (rubs := rubbing(self.rope, self.tension)):
             return np.asarray(rubs.around(self.rope.axis.turned(x) - angle_of(self.rope, rubs)))
         if self.axial_force:

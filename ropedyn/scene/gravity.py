@@ -44,11 +44,12 @@ class Gravity(Description):
     alone and antisymmetric ones not at all. With x free at an end h is 0 and sag stiffens nothing.
 
     The parabola is the whole rope's whatever supports it between; the weight of what stands on it
-    does not curve it; a `PointMass` keeps its inertia along x. `Modes.model_error` says what that
-    leaves out, and `Modes.catenary` what is true. Where it may be more than a thousandth of a
-    frequency, above frequencies along the rope, and where both effects act, modes, counts,
-    responses and statics of continuous spans are those of `Scene.on_catenary`; what is not carried
-    there stays the parabola's with a `ModelWarning`, and is refused where both act.
+    does not curve it, as it does on the catenary; a `PointMass` keeps its inertia along x.
+    `Modes.model_error` says what that leaves out, and `Modes.catenary` what is true. Where it may
+    be more than a thousandth of a frequency, above frequencies along the rope, and where both
+    effects act, modes, counts, responses and statics of continuous spans are those of
+    `Scene.on_catenary`; what is not carried there stays the parabola's with a `ModelWarning`, and
+    is refused where both act.
 
     Parameters
     ----------

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..axis.axis import Axis
+from ..axis.catenary import catenaries, checked_loads, upward
 from ..base.check import shown
 from ..base.errors import SceneError
 from .end import end_of
@@ -86,17 +87,18 @@ def catenary_scene(scene: Scene) -> Scene:
     if not gravity.g > 0:
         raise SceneError(f"g must be > 0 of a rope on its catenary, got {gravity.g!r} m/s^2")
     _refuse_beside(scene)
-    axis = _axis_of(scene, gravity)
+    loads = _loads_of(scene)
+    axis = _axis_of(scene, gravity, loads)
     longer = axis.length / rope.length
     stands: list[Any] = standing(scene.parts)
     parts = [dataclasses.replace(part, x=longer * part.x) for part in stands]
     return scene.replace(
-        rope=_rope_on(rope, axis), tension=0.0, gravity=Gravity(gravity.g), parts=parts
+        rope=_rope_on(rope, axis, bool(loads)), tension=0.0, gravity=Gravity(gravity.g), parts=parts
     )
 
 
-CARRIED = ("spring", "dashpot", "support")
-"""Kinds of parts that leave a catenary what it is."""
+CARRIED = ("point mass", "spring", "dashpot", "support")
+"""Kinds of parts that leave a catenary what it is, but for kinks where they weigh."""
 
 
 def _refuse_beside(scene: Described) -> None:
@@ -120,21 +122,31 @@ def _refuse_beside(scene: Described) -> None:
         raise SceneError(f"tension must be constant {where}, got {shown(tension)}")
 
 
-def _rope_on(rope: Rope, axis: Axis) -> Rope:
+def _loads_of(scene: Described) -> list[tuple[float, float]]:
+    """Return where a rope carries weights, as shares of its length, and their lengths of it [m]."""
+    rope = scene.rope
+    stands: list[Any] = standing(scene.parts)
+    return [
+        (part.x / rope.length, part.mass / rope.linear_density)
+        for part in stands
+        if getattr(part, "mass", 0.0) > 0 and 0 < part.x < rope.length
+    ]
+
+
+def _rope_on(rope: Rope, axis: Axis, kinks: bool) -> Rope:
     """Return a rope on an axis: one that says nothing of twist has that of a wire that is bent."""
     bending = own_number(rope, "bending_stiffness")
     own: dict[str, Any] = {"length": axis.length, "axis": axis}
     if bending is not None and rope.torsional_stiffness is None:
         own["torsional_stiffness"] = bending
-    if isinstance(rope.bending_stiffness, tuple):
+    if isinstance(rope.bending_stiffness, tuple) or (kinks and bending is not None):
         own["natural"] = "axis"
     return dataclasses.replace(rope, **own)
 
 
-def _axis_of(scene: Described, gravity: Gravity) -> Axis:
+def _axis_of(scene: Described, gravity: Gravity, loads: list[tuple[float, float]]) -> Axis:
     """Find the catenary whose tension along the chord is the scene's where that is known."""
-    # with d = span/2c and sinh m = tan(psi) d/sinh(d) it begins at c sinh(m - d) from its lowest
-    # point; its tension is w (c, u) in the level and upwards at u = c sinh(m - d) + s
+    # of the parameter c = span/2d; its tension is w (c, u) in the level and upwards
     from scipy.optimize import brentq
 
     length = scene.rope.length
@@ -142,14 +154,13 @@ def _axis_of(scene: Described, gravity: Gravity) -> Axis:
     share = place_of(tension, length) / length
     height = tension.mean / (scene.rope.linear_density * gravity.g)
     cos, sin = math.cos(gravity.inclination), math.sin(gravity.inclination)
-    span, rise = length * cos, length * sin
+    span, rise, carried = length * cos, length * sin, checked_loads(loads)
 
     def missed(d: float) -> float:
-        c, m = span / (2 * d), math.asinh(sin / cos * d / math.sinh(d))
-        up = c * (math.sinh(m - d) + share * 2 * math.sinh(d) * math.cosh(m))
-        return cos * c + sin * up - height
+        c = span / (2 * d)
+        return cos * c + sin * upward(catenaries(span, rise, c, carried), share) - height
 
-    low = length / (4 * (abs(height) + length))
+    low = length / (4 * (abs(height) + length + sum(load for _, load in loads)))
     high = 1.25 * low
     while high < DEEPEST and missed(high) > 0:
         low, high = high, 1.25 * high
@@ -159,4 +170,4 @@ def _axis_of(scene: Described, gravity: Gravity) -> Axis:
             f"N of one that weighs {scene.rope.linear_density * gravity.g * length:g} N"
         )
     d = float(brentq(missed, low, high, xtol=1e-300, rtol=4 * np.finfo(float).eps))
-    return Axis.catenary(span, rise, parameter=span / (2 * d))
+    return Axis.catenary(span, rise, parameter=span / (2 * d), loads=loads)

@@ -141,20 +141,21 @@ NodeForce, Stop, AddedMass, LocalChange
 
             T_ref + w sin(inclination) (s - s_ref)
 
-        exactly, with w the weight per length: T_ref is the tension of the scene, s_ref the place of
-        `Tension`, a share of the arc as it is of the chord. The horizontal tension H and with it
-        the parameter H/w follow. Density and stiffnesses are those of a metre of the curve; parts
-        stand at their share of the arc; x is along the tangent there and z towards the centre of
-        the curve, alpha and beta alike; what an end clamps is the rope as it hangs.
+        exactly, with w the weight per length, and masses between add theirs: T_ref is the tension
+        of the scene, s_ref the place of `Tension`, a share of the arc as it is of the chord. The
+        horizontal tension H and with it the parameter H/w follow. Density and stiffnesses are those
+        of a metre of the curve; parts stand at their share of the arc; x is along the tangent there
+        and z towards the centre of the curve, alpha and beta alike; what an end clamps is the rope
+        as it hangs.
 
         `compile` does so itself where a parabola may be a thousandth of a frequency off.
 
         Raises
         ------
         SceneError
-            If gravity does not curve the rope or makes another curve of it (masses and resonators
-            on it, stretches of other weight), or what is not carried along a curve: laid ropes,
-            twist in one plane, a tension that is not constant.
+            If gravity does not curve the rope or makes another curve of it (resonators, stretches
+            of other weight), bending rounds off the kinks at masses, or for what is not carried
+            along a curve: laid ropes, twist in one plane, a tension that is not constant.
 
         Examples
         --------

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..axis.piece import CatenaryPiece
+from ..axis.axis import Axis
 from ..base.array import Real
 from ..base.errors import SceneError
 from .gravity import Gravity
@@ -39,12 +39,11 @@ def pulls(gravity: Gravity | None) -> float:
     return gravity.g * math.sin(gravity.inclination)
 
 
-def hanging(rope: Rope, gravity: Gravity | None) -> CatenaryPiece | None:
+def hanging(rope: Rope, gravity: Gravity | None) -> Axis | None:
     """Return the catenary that a rope with weight hangs in."""
     if rope.axis is None or gravity is None or not gravity.own_weight:
         return None
-    piece = rope.axis.pieces[0]
-    return piece if isinstance(piece, CatenaryPiece) else None
+    return rope.axis if rope.axis.hangs else None
 
 
 def rubbing(rope: Rope, tension: float | Tension) -> Tension | None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base import check
-from ..base.check import COORDINATES, is_end
 from ..base.computed import computed
 from ..base.errors import ModelWarning, SceneError, warn
 from ..chain.compiled import Compiled
@@ -83,12 +82,10 @@ class Hanging(Compiled):
         return super().count(below=below)  # type: ignore[misc]
 
     def frf(self, frequency: Any, **how: Any) -> FRF:
-        """Compute a response; of forces in the rope and moved ends, and at 2 f, the parabola's."""
-        points = (how.get("drive"), how.get("response"))
-        plain = all(_are_coordinates(one) for one in points) and how.get("harmonic", 1) == 1
-        top = check.frequencies(frequency)
-        if hung := self._hung(top, "this response", plain and not how.get("decay")):
-            names = ("drive", "response", "quantity", "solver", "threads")
+        """Compute a response; that at 2 f is the parabola's."""
+        top, plain = check.frequencies(frequency), how.get("harmonic", 1) == 1
+        if hung := self._hung(top, "motion at 2 f", plain):
+            names = ("drive", "response", "quantity", "solver", "threads", "decay")
             return hung.frf(frequency, **{name: how[name] for name in names if name in how})
         return super().frf(frequency, **how)  # type: ignore[misc]
 
@@ -99,20 +96,13 @@ class Hanging(Compiled):
         return super().static(load, **how)  # type: ignore[misc]
 
     def transient(self, time: Any, **how: Any) -> Any:
-        """Integrate the motion of the parabola, and say so."""
-        self._hung(0.0, "motion over time", False)
+        """Integrate motion; that by modes or events is the parabola's."""
+        by_line = how.get("method", "auto") in ("auto", "line")
+        if hung := self._hung(0.0, "motion over time by modes or events", by_line):
+            return hung.transient(time, **how)
         return super().transient(time, **how)  # type: ignore[misc]
 
     def stepped_sine(self, frequency: Any, **how: Any) -> Any:
         """Find the steady motion of the parabola, and say so."""
         self._hung(0.0, "steady motion", False)
         return super().stepped_sine(frequency, **how)  # type: ignore[misc]
-
-
-def _are_coordinates(points: Any) -> bool:
-    """Whether points are coordinates of the rope, neither forces in it nor motions of its ends."""
-    several = isinstance(points, (list, tuple)) and points and not isinstance(points[0], str)
-    given = points if several else (points,)
-    return points is None or all(
-        not is_end(one) and isinstance(one, tuple) and one[0] in COORDINATES for one in given
-    )

@@ -41,12 +41,10 @@ def elements(edges, rest, mass=(), *, number, degree=12):
             heavy[node, node] += one
     held = [0, nodes - 1, nodes, 2 * nodes - 1]
     free = np.setdiff1d(np.arange(2 * nodes), held)
-    pair = stiff[np.ix_(free, free)], heavy[np.ix_(free, free)]
-    value = scipy.linalg.eigh(*pair, eigvals_only=True, subset_by_index=[0, number - 1])
-    return np.sqrt(value) / (2 * math.pi)
+    return lowest(stiff[np.ix_(free, free)], heavy[np.ix_(free, free)], number)
 
 
-def aside(edges, rest, *, number, degree=12):
+def aside(edges, rest, mass=(), *, number, degree=12):
     """Frequencies [Hz] of the same string out of that plane, where the tension alone pulls back."""
     at, weight = legendre.leggauss(degree + 6)
     value, rate = integrated(degree, at)
@@ -58,10 +56,19 @@ def aside(edges, rest, *, number, degree=12):
         own = np.array([k * degree, (k + 1) * degree, *(k * degree + np.arange(1, degree))])
         stiff[np.ix_(own, own)] += (rate * tension * weight) @ rate.T / half
         heavy[np.ix_(own, own)] += half * (value * density * weight) @ value.T
+    for k, one in enumerate(mass, start=1):
+        heavy[k * degree, k * degree] += one
     free = np.setdiff1d(np.arange(nodes), [0, nodes - 1])
-    pair = stiff[np.ix_(free, free)], heavy[np.ix_(free, free)]
-    value = scipy.linalg.eigh(*pair, eigvals_only=True, subset_by_index=[0, number - 1])
-    return np.sqrt(value) / (2 * math.pi)
+    return lowest(stiff[np.ix_(free, free)], heavy[np.ix_(free, free)], number)
+
+
+def lowest(stiff, heavy, number):
+    """The lowest frequencies [Hz], as largest of the inverse: rounding goes with the largest."""
+    last = len(stiff) - 1
+    value = scipy.linalg.eigh(
+        heavy, stiff, eigvals_only=True, subset_by_index=[last - number + 1, last]
+    )
+    return 1 / np.sqrt(value[::-1]) / (2 * math.pi)
 
 
 def of_catenary(scene, *, number, count=4, solve=elements):
