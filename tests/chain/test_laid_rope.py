@@ -160,7 +160,7 @@ def test_rounding_error_covers_what_a_pulled_rope_that_twists_softly_loses(slope
         lay_slope=slope,
     )
     scene = rd.Scene(rope, tension=1e6)
-    cuts = [scene.compile(elements=n, element="continuous").modes(6) for n in range(1, 9)]
+    cuts = [scene.compile(elements=n, element="continuous").modes(6) for n in (1, 2, 5, 8)]
     for one, other in itertools.combinations(cuts, 2):
         apart = np.abs(one.frequency - other.frequency)
         assert (apart <= one.rounding_error + other.rounding_error).all()

@@ -28,7 +28,7 @@ AT = {
 }
 KINDS = ("difference", "rigid", "tensed")
 
-FEW, MANY = 300, 10_000
+FEW, MANY = 60, 10_000
 MOST = 5
 """Modes of each component."""
 

@@ -65,7 +65,7 @@ def check_scene(both, own, number=10, **elements):
 
 @pytest.mark.parametrize("elements", [{}, {"elements": 12}])
 def test_both_planes_have_the_modes_of_each_alone(elements):
-    for both, own in pairs(2, 25):
+    for both, own in pairs(2, 8):
         if elements:  # the same mesh in both: nothing stands in one plane alone
             bare = both.replace(parts=[])
             check_scene(bare, {name: plane(bare, name) for name in own}, **elements)

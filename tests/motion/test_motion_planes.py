@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from conftest import long
 from two_planes import plane, turned
 
 import ropedyn as rd
@@ -98,7 +99,7 @@ def test_harmonic_balance_takes_a_law_in_the_plane_of_y():
 PULSATING = BOTH.replace(tension=rd.Tension(2830.0, amplitude=300.0, frequency=130.0))
 
 
-@pytest.mark.parametrize("name", ["y", "z"])
+@pytest.mark.parametrize("name", ["y", *long("z")])
 def test_a_tension_that_pulsates_acts_in_each_plane_alone(name):
     model = PULSATING.compile(elements=4)
     alone = plane(PULSATING, name).compile(elements=4)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import slow
 from scipy.special import mathieu_a, mathieu_b
 
 from ropedyn.motion.modal_system import ModalSystem
@@ -54,7 +55,7 @@ def wrong_points(rng, points):
     return int(((off > NO_GROWTH) & ~hidden).sum()), found
 
 
-@pytest.mark.parametrize("number", range(12))
+@pytest.mark.parametrize("number", [*range(4), *slow(*range(4, 12))])
 def test_edges_are_those_of_a_scan(number):
     """Of modes up to the ninth order; none missed, none invented."""
     wrong, found = wrong_points(np.random.default_rng([2, number]), 4000)
