@@ -139,7 +139,7 @@ def test_a_free_rope_is_not_at_rest_under_a_force():
     model = rd.Scene(ROPE, planes="both", ends=("free", "free")).compile()
     with pytest.raises(rd.SolveError, match="a rigid motion is free"):
         model.static({("z", 0.0): 1.0})
-    with pytest.raises(rd.SolveError, match="0 Hz lies on an undamped resonance"):
+    with pytest.raises(rd.SolveError, match="0.0 Hz has no correct digit"):
         model.frf([0.0], drive=("z", 0.0))
     modes = model.modes(7)
     assert (modes.frequency == 0).sum() == 6
