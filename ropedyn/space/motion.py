@@ -148,9 +148,7 @@ def _holds(model: SpaceModel, point: Point) -> bool:
     return bool(cut.held[node[0], SIX.index(point[0])])
 
 
-def _observed(
-    model: SpaceModel, given: Any, drives: tuple[Point, ...]
-) -> tuple[Point, ...]:
+def _observed(model: SpaceModel, given: Any, drives: tuple[Point, ...]) -> tuple[Point, ...]:
     return watched(model.scene, given, drives)
 
 

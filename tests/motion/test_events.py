@@ -128,6 +128,7 @@ def followed(model, time, response):
     run = Run.of(
         model,
         time,
+        STRAIGHT,
         response=response,
         quantity="displacement",
         start=None,

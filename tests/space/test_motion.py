@@ -5,8 +5,8 @@ import pytest
 
 import ropedyn as rd
 from ropedyn.cli.command import main
-from ropedyn.space.model import compile_space
 from ropedyn.space import motion
+from ropedyn.space.model import compile_space
 
 TIME = np.linspace(0.0, 0.3, 401)
 LINE = rd.Scene(
