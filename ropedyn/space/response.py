@@ -270,10 +270,9 @@ class Request:
         rows = system.together(right, apart)
         u, force = system.apart(system.respond(rows))
         field = LoadedFields(u + moved, force, load, slip)
-        lost = np.flatnonzero(field.lost(system, rows)) if end == 0 else ()
-        if len(lost):
+        if end == 0 and (lost := field.lost(system, rows)).any():
             there = [c for c in side.own if not self.rope.absent[SIX.index(c)]]
-            raise OnResonance(float(self.frequency[lines][lost[0]]), there)
+            raise OnResonance(float(self.frequency[lines][lost.argmax()]), there)
         return field
 
     def _ports(self, system: Assembly, side: AskedPart, end: int) -> SpacePorts:
