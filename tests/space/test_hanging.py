@@ -202,9 +202,9 @@ MASS = DEEP.replace(parts=[rd.PointMass(50.0, 1.0)])
     ("scene", "how", "ask", "told"),
     [
         (DEEP, {"elements": 8}, lambda m: m.modes(1), "is of elements"),
-        (MASS, {}, lambda m: m.modes(1), "got a point mass"),
-        (MASS, {}, lambda m: m.count(below=1.0), "got a point mass"),
-        (MASS, {}, lambda m: m.static({("z", 50.0): 1.0}), "got a point mass"),
+        (MASS, {}, lambda m: m.modes(1), "got point mass"),
+        (MASS, {}, lambda m: m.count(below=1.0), "got point mass"),
+        (MASS, {}, lambda m: m.static({("z", 50.0): 1.0}), "got point mass"),
         (DEEP, {}, lambda m: m.modes(1, damped=True), "damped motion is not carried"),
         (DEEP, {}, lambda m: m.frf([0.1], drive=("end", 0, "z"), response=("z", 9.0)), "response"),
         (DEEP, {}, lambda m: m.frf([0.1], drive=("z", 9.0), decay=0.1), "this response is not"),
