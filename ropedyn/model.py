@@ -23,7 +23,7 @@ from .motion.history import History
 from .motion.periodic.asked import SteppedSine
 from .motion.periodic.branches import Branches, solve_branches
 from .motion.periodic.stepped import solve_stepped
-from .motion.request import Run
+from .motion.request import STRAIGHT, Run
 from .motion.solve import follow_motion
 from .motion.turning import refuse_steady, turned
 from .parametric.floquet import Floquet, solve_floquet
@@ -408,7 +408,7 @@ class Model(Compiled):
         asked |= {"method": method, "modes": modes, "tolerance": tolerance}
         asked |= {"partial": partial, "progress": progress}
         refuse_rubbing(self, "over time it is a hysteresis along the whole rope; its steady motion")
-        run = Run.of(self, time, **asked)
+        run = Run.of(self, time, STRAIGHT, **asked)
         return turned(run, follow_motion)
 
     @waited

@@ -49,9 +49,10 @@ RD_INLINE double size(double a)
 {
     return fabs(a);
 }
+/* NAN where one is */
 RD_INLINE double larger_size(double a, double b)
 {
-    return a > b ? a : b;
+    return a > b || isnan(a) ? a : b;
 }
 RD_INLINE double lesser_size(double a, double b)
 {
@@ -240,7 +241,8 @@ static int doubled(struct counting *c, struct family *f, double *below)
     double more = 0;
     for (int i = 0; i < count; i++) {
         pair(f, i, &one, &two);
-        if (join(&one, &two, NULL, longer + i).largest > (f->poly ? STEADY : c->gentle))
+        /* at a resonance there is no joint, but numbers that are none */
+        if (!(join(&one, &two, NULL, longer + i).largest <= (f->poly ? STEADY : c->gentle)))
             return 0;
         const int here = joint(c, &one, &two, nothing);
         if (f->poly && here != 0)

@@ -39,9 +39,10 @@ RD_INLINE lanes size(cv a)
 {
     return c_size(a);
 }
+/* NAN where one is */
 RD_INLINE lanes larger_size(lanes a, lanes b)
 {
-    return l_select(a > b, a, b);
+    return l_select((a > b) | (a != a), a, b);
 }
 RD_INLINE lanes lesser_size(lanes a, lanes b)
 {

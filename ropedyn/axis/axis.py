@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -94,9 +95,9 @@ class Axis:
         Raises
         ------
         TypeError
-            If something is of the wrong type, or there is no such argument.
+            If something is of the wrong type.
         SceneError
-            If there is no such kind, or as what makes it does.
+            If there is no such kind, an argument is missing or unknown, or as what makes it does.
 
         Examples
         --------
@@ -108,7 +109,14 @@ class Axis:
         given = dict(words)
         kind = check.one_of(given.pop("kind", None), "axis.kind", KINDS)
         back = check.instance(given.pop("reversed", False), "axis.reversed", bool, "True or False")
-        found: Axis = getattr(Axis, kind)(**given)
+        make = getattr(Axis, kind)
+        takes = inspect.signature(make).parameters
+        for name in given:
+            check.one_of(name, f"a key of axis of kind {kind!r}", tuple(takes))
+        for name, one in takes.items():
+            if name not in given and one.default is one.empty:
+                raise SceneError(f"axis.{name} must be given of kind {kind!r}, got nothing")
+        found: Axis = make(**given)
         return found.reversed() if back else found
 
     @staticmethod
@@ -196,8 +204,7 @@ class Axis:
         [51.85 51.85 53.38 53.38] ['y' 'y' 'z' 'z']
         """
         r = check.number(radius, "radius", "m", sign="positive")
-        whole = _placed(UniformPiece(2 * math.pi * r, 0.0, 1 / r), kind="ring", radius=r)
-        return replace(whole, closed=True)
+        return replace(Axis.arc(r, 2 * math.pi), words={"kind": "ring", "radius": r}, closed=True)
 
     @staticmethod
     def helix(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -58,8 +58,9 @@ class Run:
     @classmethod
     def of(
         cls,
-        model: Compiled,
+        model: Any,
         time: Any,
+        kind: Kind,
         *,
         drive: Any,
         force: Any,
@@ -75,25 +76,26 @@ class Run:
         partial: bool,
     ) -> Run:
         """Check what is asked."""
-        why = _refused(model, method)
+        chosen, is_linear = kind.chosen(model, method, modes, partial)
         check.one_of(quantity, "quantity", MOTIONS)
         t = checked_times(time)
-        drives, given = _driven(model, drive, force, t)
-        loads, kicks = released(model, start), kicked(model, velocity)
+        drives, given = _driven(model, kind, drive, force, t)
+        loads, kicks = kind.released(model, start), kind.kicked(model, velocity)
         run = cls(
             model,
             t,
             drives,
             given,
-            responses=observed(model, response, drives),
-            method=method,
-            is_linear=not why,
+            responses=kind.observed(model, response, drives),
+            method=chosen,
+            is_linear=is_linear,
             order=MOTIONS[quantity],
-            snapshots=checked_snapshots(snapshots, t),
+            snapshots=_checked_snapshots(snapshots, t),
             modes=None if modes is None else check.count(modes, "modes", most=1_000_000),
             tolerance=check.optional(tolerance, "tolerance", sign="positive"),
             progress=reporter(progress),
             partial=check.instance(partial, "partial", bool, "True or False"),
+            transfer=kind.transfer,
         )
         return run.beginning(loads, kicks)
 
@@ -161,13 +163,26 @@ class Run:
         }
 
 
-def _refused(model: Compiled, method: str) -> str:
-    """Say what is not linear; refuse what tells linear motion there."""
-    check.one_of(method, "method", METHODS)
+class Kind(NamedTuple):
+    """How a kind of model takes what is asked over time."""
+
+    # model, method, modes and partial as they are given: the method, and whether sums tell motion
+    chosen: Callable[[Any, Any, Any, Any], tuple[str, bool]]
+    driven: Callable[[Any, Any], tuple[tuple[Point, ...], bool]]  # and whether a list is given
+    holds: Callable[[Any, Point], bool]
+    observed: Callable[[Any, Any, tuple[Point, ...]], tuple[Point, ...]]
+    released: Callable[[Any, Any], Begun]
+    kicked: Callable[[Any, Any], Begun]
+    transfer: Callable[[Any, tuple[Any, ...], tuple[Point, ...]], TransferFunctions]
+
+
+def _chosen(model: Compiled, method: Any, _modes: Any, _partial: Any) -> tuple[str, bool]:
+    """Say whether the model is linear; refuse what tells linear motion where it is not."""
+    chosen: str = check.one_of(method, "method", METHODS)
     why = why_not_linear(model)
     if method in ("modal", "line") and why:
         raise SceneError(f'method must be "auto" or "events" where {why}, got "{method}"')
-    return why
+    return chosen, not why
 
 
 def why_not_linear(model: Compiled) -> str:
@@ -196,20 +211,21 @@ def checked_times(given: Any) -> Real:
 
 
 def _driven(
-    model: Compiled, drive: Any, force: Any, time: Real
+    model: Any, kind: Kind, drive: Any, force: Any, time: Real
 ) -> tuple[tuple[Point, ...], tuple[Force, ...]]:
     """Return what is driven and by which forces."""
     if (drive is None) != (force is None):
         raise SceneError("give both drive and force, or neither")
     if drive is None:
         return (), ()
-    drives, several = points(model, drive, "drive", forces=False, ends=True)
+    drives, several = kind.driven(model, drive)
     for point in drives:
-        _refuse_held(model, point)
-    return drives, acting_forces(drives, force, time, several=several)
+        if not is_end(point) and kind.holds(model, point):
+            raise SceneError(f"drive must be free to move, got {point}, which a support holds")
+    return drives, _acting_forces(drives, force, time, several=several)
 
 
-def acting_forces(
+def _acting_forces(
     drives: tuple[Point, ...], force: Any, time: Real, *, several: bool
 ) -> tuple[Force, ...]:
     """Return the force on each drive; several: whether a list of them is given."""
@@ -225,15 +241,7 @@ def acting_forces(
     )
 
 
-def _refuse_held(model: Compiled, drive: Point) -> None:
-    """Refuse a force on what a support holds."""
-    if is_end(drive):
-        return
-    if is_held(model.chain, model.x, model.coordinates, drive):
-        raise SceneError(f"drive must be free to move, got {drive}, which a support holds")
-
-
-def checked_snapshots(given: Any, time: Real) -> Real:
+def _checked_snapshots(given: Any, time: Real) -> Real:
     """Return times within others, none where none are given."""
     if given is None:
         return np.zeros(0)
@@ -244,3 +252,15 @@ def checked_snapshots(given: Any, time: Real) -> Real:
             f"got {check.shown(given)}"
         )
     return when
+
+
+def _points(model: Compiled, given: Any) -> tuple[tuple[Point, ...], bool]:
+    return points(model, given, "drive", forces=False, ends=True)
+
+
+def _holds(model: Compiled, point: Point) -> bool:
+    return is_held(model.chain, model.x, model.coordinates, point)
+
+
+STRAIGHT = Kind(_chosen, _points, _holds, observed, released, kicked, Transfer)
+"""Of chains and spans of a straight rope."""

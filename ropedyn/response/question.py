@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,19 +92,18 @@ class Question:
 
     def resonance(self, k: int, more: str = "") -> OnResonance:
         """Return what says that frequency k has no answer."""
-        at = float(self.frequency[k])
-        refusal = OnResonance(
-            f"frequency {at!r} Hz has no correct digit in ({', '.join(self.component)}): it lies "
-            f"on an undamped resonance{more}"
-        )
-        refusal.frequency = at
-        return refusal
+        return OnResonance(float(self.frequency[k]), self.component, more)
 
 
 class OnResonance(SolveError):
-    """A line that a solver has no answer for."""
+    """A line [Hz] that a solver has no answer for."""
 
-    frequency: float  # [Hz]
+    def __init__(self, frequency: float, component: Sequence[str], more: str = "") -> None:
+        super().__init__(
+            f"frequency {frequency!r} Hz has no correct digit in ({', '.join(component)}): it lies "
+            f"on an undamped resonance{more}"
+        )
+        self.frequency = frequency
 
 
 Bound = Callable[[], Real]

@@ -133,7 +133,7 @@ def _check_parts_in_space(scene: Described, what: str) -> None:
     for i, part in enumerate(scene.parts):
         if part.kind not in IN_SPACE:
             raise SceneError(
-                f"parts[{i}] must be one of {', '.join(IN_SPACE)} for {what}, got a {part.kind}"
+                f"parts[{i}] must be one of {', '.join(IN_SPACE)} for {what}, got {part.kind}"
             )
         if isinstance(part, BrokenWire) and not part.is_wound:
             raise SceneError(f"parts[{i}].lay_length must be given for {what}, got None")

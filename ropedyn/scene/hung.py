@@ -107,7 +107,7 @@ def _refuse_beside(scene: Described) -> None:
     for i, part in enumerate(scene.parts):
         if part.kind not in CARRIED and getattr(part, "mass", None) != 0:
             raise SceneError(
-                f"parts[{i}] must be one of {', '.join(CARRIED)} {where}, got a {part.kind}"
+                f"parts[{i}] must be one of {', '.join(CARRIED)} {where}, got {part.kind}"
             )
     if rope.lay_coupling or rope.lay_slope:
         raise SceneError(f"lay_coupling and lay_slope must be left out {where}, which it twists")

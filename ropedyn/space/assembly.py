@@ -237,6 +237,7 @@ def foot_of(carried: Carried, factors: Factors) -> Foot:
 
 
 SAFE = 2.0  # Times what is told by numbers that are rounded themselves.
+FAR = 1e8  # Times the loads: below that digits are left.
 ROUNDINGS = 4.0  # Of entries of a part's matrices, in units of the largest one, scaled.
 
 
@@ -252,6 +253,20 @@ class LoadedFields(NamedTuple):
         """Return what the matrix takes of the loads that is not there."""
         p, d = system.apart(system.apply(system.together(self.u, self.f)))
         return p - self.load, d - self.slip
+
+    def lost(self, system: Assembly, right: Any) -> Flags:
+        """Say at which lines (n,) some column has no right digit, of rows of loads (n, rows, c).
+
+        That is where A is singular to rounding, and a load pushes what it does not hold.
+        """
+        x = system.together(self.u, self.f)
+        with np.errstate(all="ignore"):
+            far = ~(np.abs(x).max(1) <= FAR * np.abs(right).max(1))
+            if far.any():
+                # the work of the loads, and what rounding does to it
+                off = np.diagonal(bound(system, self, self), axis1=1, axis2=2)
+                far &= ~(off < np.abs((x * right).sum(1)))
+        return np.asarray(far.any(1))
 
 
 def bound(system: Assembly, one: LoadedFields, other: LoadedFields) -> Real:

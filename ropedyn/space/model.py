@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ELSEWHERE = (
-    *("floquet", "stability_map", "matrices", "triples"),
-    *("node_terms", "chain", "mesh_order"),
+    *("floquet", "stability_map", "stiffness_matrix", "mass_matrix", "damping_matrix"),
+    *("triples", "node_terms", "chain", "mesh_order"),
 )
 """What a model of a straight rope has that this one does not carry."""
 
@@ -471,22 +471,10 @@ class SpaceModel(Frozen):
         >>> print((1e3 * history.value[0]).round(3), history.cost.method)
         [ 0.272  0.001 -0.257 -0.012  0.244] line
         """
-        return solve_transient(
-            self,
-            time,
-            drive=drive,
-            force=force,
-            response=response,
-            quantity=quantity,
-            start=start,
-            velocity=velocity,
-            method=method,
-            modes=modes,
-            tolerance=tolerance,
-            snapshots=snapshots,
-            progress=progress,
-            partial=partial,
-        )
+        asked: Any = {"drive": drive, "force": force, "response": response, "quantity": quantity}
+        asked |= {"start": start, "velocity": velocity, "snapshots": snapshots}
+        asked |= {"method": method, "modes": modes, "tolerance": tolerance}
+        return solve_transient(self, time, partial=partial, progress=progress, **asked)
 
     @waited
     def stepped_sine(

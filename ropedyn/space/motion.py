@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,71 +14,38 @@ from ..base.array import Complex, Real
 from ..base.computed import Late, changed
 from ..base.errors import SceneError, SolveError
 from ..base.progress import reporter
-from ..base.unit import MOTIONS, push_unit
+from ..base.unit import push_unit
 from ..chain.port import Point
 from ..motion.history import History
 from ..motion.line.transfer import growth_below
 from ..motion.linear import solve_linear, within_tolerance
 from ..motion.modal.expansion import refuse_losses
-from ..motion.request import Run, acting_forces, checked_snapshots, checked_times
-from ..response.critical import exceeds
+from ..motion.request import Kind, Run
+from ..motion.start import Begun
 from ..response.deflection import Deflection, summed_loads
 from ..response.frf import FRF
 from ..scene.agree import in_space
 from .compile import finer_rope
 from .response import Request, checked_points, solve_frf, watched
 from .rope import SIX
-from .spectrum import count_below, lowest
+from .spectrum import growing
+from .static import refuse_growing
 
 if TYPE_CHECKING:
     from .model import SpaceModel
 
 METHODS = ("auto", "line")
-ALONE = {"modes": None, "partial": False}
-"""What belongs to methods of straight ropes, and what it is where nothing is said of it."""
+WORK, LEAST = 1 << 23, 32  # Parts of all rates, each with so many more: half a minute.
 
 
-def solve_transient(
-    model: SpaceModel,
-    time: Any,
-    *,
-    drive: Any,
-    force: Any,
-    response: Any,
-    quantity: str,
-    start: Any,
-    velocity: Any,
-    method: str,
-    tolerance: float | None,
-    snapshots: Any,
-    progress: Any,
-    **others: Any,
-) -> History:
+def solve_transient(model: SpaceModel, time: Any, **asked: Any) -> History:
     """Find the motion over time; see `SpaceModel.transient`."""
-    what, t = in_space(model.scene), checked_times(time)
-    check.one_of(quantity, "quantity", MOTIONS)
-    _refuse_others(what, method, others)
-    drives, forces = _driven(model, drive, force, t)
-    run: Any = Run(
-        model,  # type: ignore[arg-type]  # of a chain only its own methods ask for more
-        t,
-        drives,
-        forces,
-        watched(model.scene, response, drives),
-        method="line",
-        order=MOTIONS[quantity],
-        loads=_released(model, start),
-        kicks=_kicked(model, velocity),
-        snapshots=checked_snapshots(snapshots, t),
-        tolerance=check.optional(tolerance, "tolerance", sign="positive"),
-        progress=reporter(progress),
-        transfer=SpaceTransfer,
-    )
+    run: Any = Run.of(model, time, IN_SPACE, **asked)
     history = solve_linear(run)
     return changed(
         history,
         mesh_error=Late(partial(_mesh, run.kept, history.value)),
-        balance=partial(_refuse_energy, what),
+        balance=partial(_refuse_energy, in_space(model.scene)),
     )
 
 
@@ -108,7 +75,7 @@ def solve_stepped(
     check.number(amplitude, "amplitude", push_unit(drives[0]), sign="positive")
     check.optional(tolerance, "tolerance", sign="positive")
     refuse_losses(model)  # type: ignore[arg-type]  # of a scene
-    if count_below(model.rope, 0.0):
+    if len(growing(model.rope)):
         raise SolveError("there is no steady state: the compression is beyond critical")
     frf = solve_frf(model.scene, model.rope, f, drive=drives[0], **asked)
     reporter(progress)(1.0)
@@ -122,16 +89,23 @@ class SpaceTransfer:
     model: SpaceModel
     drives: tuple[Point, ...]
     responses: tuple[Point, ...]
-    most: ClassVar[int] = 1 << 15  # each takes a hundred times as long as one of a straight rope
 
     @property
     def growth(self) -> float:
         """How fast motion grows at most [1/s]."""
-        scene, rope, least = self.model.scene, self.model.rope, 0.0
-        if count_below(rope, 0.0):
-            least = min(least, float(lowest(rope, 1, math.inf).eigenvalue[0]))
+        scene, rope = self.model.scene, self.model.rope
+        least = float(growing(rope).min(initial=0.0))
         pushes = bool((np.linalg.eigvalsh(rope.springs) < 0).any())
         return growth_below(least, scene.dampings, pushes=pushes)
+
+    def most(self, omega: float) -> int:
+        """Return how many rates are looked at: each takes as long as its parts."""
+        asked = self._asked(np.array([1j * omega]))
+        try:
+            parts = sum(asked.assembled(side, slice(1)).parts for side in asked.components)
+        except SolveError:  # too many
+            return 0
+        return int(WORK / (LEAST + parts))
 
     def at(self, s: Complex) -> Complex:
         """Return it, shape (drives, responses, n)."""
@@ -147,58 +121,54 @@ class SpaceTransfer:
         return Request.of(model.scene, model.rope, frequency, *ends, decay=s.real)
 
 
-def _refuse_others(what: str, method: str, others: dict[str, Any]) -> None:
+def _chosen(model: SpaceModel, method: Any, modes: Any, partial: Any) -> tuple[str, bool]:
     """Refuse methods that need a chain, and what belongs to them."""
+    what = in_space(model.scene)
     if method not in METHODS:
         raise SceneError(
             f'method must be "line" or "auto" for {what}, of which exact transfer functions are '
             f"known and no chain or modal sum, got {check.shown(method)}"
         )
-    for name, value in others.items():
-        if value != ALONE[name]:
+    for name, value, left_out in (("modes", modes, None), ("partial", partial, False)):
+        if value != left_out:
             raise SceneError(
                 f"{name} must be left out for {what}, whose motion the line finds without it, got "
                 f"{check.shown(value)}"
             )
+    return "line", True
 
 
-def _driven(
-    model: SpaceModel, drive: Any, force: Any, time: Real
-) -> tuple[tuple[Point, ...], tuple[Any, ...]]:
-    """Return what is driven, and by which forces."""
-    if (drive is None) != (force is None):
-        raise SceneError("give both drive and force, or neither")
-    if drive is None:
-        return (), ()
-    drives, several = checked_points(model.scene, drive, "drive")
-    pushed = [point for point in drives if not check.is_end(point)]
+def _points(model: SpaceModel, given: Any) -> tuple[tuple[Point, ...], bool]:
+    return checked_points(model.scene, given, "drive")
+
+
+def _holds(model: SpaceModel, point: Point) -> bool:
     near = check.NEAR * model.scene.rope.length
-    cut, node = model.rope.cut(np.array([at for _, at in pushed]), near)
-    for at, point in zip(node, pushed):
-        if cut.held[at, SIX.index(point[0])]:
-            raise SceneError(f"drive must be free to move, got {point}, which a support holds")
-    return drives, acting_forces(drives, force, time, several=several)
+    cut, node = model.rope.cut(np.array([point[1] * model.rope.longer]), near)
+    return bool(cut.held[node[0], SIX.index(point[0])])
 
 
-def _released(model: SpaceModel, start: Any) -> dict[Point, float]:
+def _observed(model: SpaceModel, given: Any, drives: tuple[Point, ...]) -> tuple[Point, ...]:
+    return watched(model.scene, given, drives)
+
+
+def _released(model: SpaceModel, start: Any) -> Begun:
     """Return the loads that are let go [N, N m]."""
     if start is None:
-        return {}
+        return Begun({})
     if isinstance(start, Deflection):
-        return dict(start.load)
+        return Begun(dict(start.load))
     loads = _loads(model, start, "start")
-    critical = count_below(model.rope, -1e-13 * model.rope.unit)
-    if critical:
-        raise SolveError(
-            f"the rope does not stay at rest: {exceeds(critical)}; start takes "
-            "SpaceModel.static(.., unstable=True) all the same"
-        )
-    return loads
+    refuse_growing(model.rope, "start takes SpaceModel.static(.., unstable=True) all the same")
+    return Begun(loads)
 
 
-def _kicked(model: SpaceModel, velocity: Any) -> dict[Point, float]:
+def _kicked(model: SpaceModel, velocity: Any) -> Begun:
     """Return the impulses that begin motion [N s, N m s]."""
-    return {} if velocity is None else _loads(model, velocity, "velocity")
+    return Begun({} if velocity is None else _loads(model, velocity, "velocity"))
+
+
+IN_SPACE = Kind(_chosen, _points, _holds, _observed, _released, _kicked, SpaceTransfer)
 
 
 def _loads(model: SpaceModel, given: Any, name: str) -> dict[Point, float]:

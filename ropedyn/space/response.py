@@ -13,11 +13,12 @@ from ..base import check
 from ..base.answer import Cost
 from ..base.array import Complex, Index, Real
 from ..base.computed import Late, computed
-from ..base.errors import SceneError, SolveError
+from ..base.errors import SceneError
 from ..base.unit import QUANTITIES, WIRE
 from ..chain.place import moved_end
 from ..chain.port import Point, is_force, moving
 from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
+from ..response.question import OnResonance
 from ..scene import damping
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.scene import Scene
@@ -25,7 +26,9 @@ from .assembly import ROUNDINGS, Assembly, LoadedFields, assemble, bound
 from .compile import finer_rope, method_of
 from .rope import SIX, Factors, SpaceRope
 
-AT_ONCE = 128  # That are assembled together.
+AT_ONCE = 128  # Lines are assembled together at most,
+FIRST = 16  # so many at first,
+TOGETHER = 1 << 17  # and of their parts so many.
 
 
 def checked_points(
@@ -204,7 +207,10 @@ class Request:
             ports = self._ports(system, side, 1)
             seen = np.einsum("lrc,lrcd->drl", ports.motion_doubt, np.abs(one.u[:, ports.node]))
             seen += np.einsum("lrc,lrcd->drl", ports.force_doubt, np.abs(one.f[:, ports.part]))
-            limit[(*side.pairs, lines)] = bound(system, one, other).transpose(1, 2, 0) + seen
+            with np.errstate(all="ignore"):
+                moved = bound(system, one, other).transpose(1, 2, 0) + seen
+            # a response that pushes what nothing holds, where no drive does, has no bound
+            limit[(*side.pairs, lines)] = np.where(np.isfinite(moved), moved, np.inf)
         return limit
 
     @property
@@ -227,15 +233,23 @@ class Request:
 
     def _systems(self) -> Iterator[tuple[AskedPart, slice, Assembly]]:
         for side in self.components:
-            for first in range(0, len(self.frequency), AT_ONCE):
-                lines = slice(first, first + AT_ONCE)
-                factors = Factors(*(one[lines] for one in self.factors))
-                z = self.rope.scale(side.which, np.abs(factors.inertia))
-                yield side, lines, assemble(self.rope, side.which, factors, z)
+            first, count = 0, FIRST
+            while first < len(self.frequency):
+                lines = slice(first, first + count)
+                system = self.assembled(side, lines)
+                yield side, lines, system
+                first += count
+                count = max(1, min(AT_ONCE, TOGETHER // system.parts))
+
+    def assembled(self, side: AskedPart, lines: slice) -> Assembly:
+        """Return a component at some of the lines."""
+        factors = Factors(*(one[lines] for one in self.factors))
+        z = self.rope.scale(side.which, np.abs(factors.inertia))
+        return assemble(self.rope, side.which, factors, z)
 
     def _solved(self, system: Assembly, side: AskedPart, lines: slice, end: int) -> LoadedFields:
         """Return motion and force of unit loads on drives (0) or responses (1)."""
-        ports, n, f = self._ports(system, side, end), len(system.D), self.frequency[lines]
+        ports, n = self._ports(system, side, end), len(system.D)
         columns = np.arange(len(ports.node))
         load = np.zeros((n, system.parts + 1, system.width, len(columns)), dtype=np.complex128)
         slip = np.zeros((n, system.parts, system.width, len(columns)), dtype=np.complex128)
@@ -253,14 +267,13 @@ class Request:
             right[:, :-1] -= system.Q @ moved[:, :-1]
             apart = slip - np.diff(moved, axis=1) + system.D @ moved[:, :-1]
         load[system.held] = right[system.held] = 0.0
-        x = system.respond(system.together(right, apart))
-        singular = np.flatnonzero(~np.isfinite(x).all(axis=(1, 2)))
-        if len(singular):
-            raise SolveError(
-                f"{f[singular[0]]:g} Hz lies on an undamped resonance: there is no finite response"
-            )
-        u, force = system.apart(x)
-        return LoadedFields(u + moved, force, load, slip)
+        rows = system.together(right, apart)
+        u, force = system.apart(system.respond(rows))
+        field = LoadedFields(u + moved, force, load, slip)
+        if end == 0 and (lost := field.lost(system, rows)).any():
+            there = [c for c in side.own if not self.rope.absent[SIX.index(c)]]
+            raise OnResonance(float(self.frequency[lines][lost.argmax()]), there)
+        return field
 
     def _ports(self, system: Assembly, side: AskedPart, end: int) -> SpacePorts:
         """Return what points see of their nodes and of the part left of them."""

@@ -144,6 +144,18 @@ def count_below(rope: SpaceRope, eigenvalue: float) -> int:
     return Counter(rope).total([eigenvalue])[0]
 
 
+def growing(rope: SpaceRope) -> Real:
+    """Return the eigenvalues that are negative beyond what rounding does: as many critical loads.
+
+    Of a free rope counts below 0 have rigid motions too, in which nothing is strained.
+    """
+    count = count_below(rope, 0.0)
+    if not count:
+        return np.zeros(0)
+    found = lowest(rope, count, math.inf)
+    return found.eigenvalue[found.eigenvalue < -found.error]
+
+
 def lowest(rope: SpaceRope, wanted: int | None, below: float) -> Lowest:
     """Return the lowest eigenvalues, so many or all below one: of each component its own share."""
     counter, unit = Counter(rope), rope.unit

@@ -21,7 +21,14 @@ from .assembly import ROUNDINGS, Assembly, LoadedFields, assemble, bound
 from .compile import finer_rope, method_of
 from .modes import check_points
 from .rope import SIX, SpaceRope, unforced
-from .spectrum import count_below
+from .spectrum import growing, start
+
+
+def refuse_growing(rope: SpaceRope, instead: str) -> None:
+    """Refuse a rope that rests where it does not stay."""
+    critical = len(growing(rope))
+    if critical:
+        raise SolveError(f"the rope does not stay at rest: {exceeds(critical)}; {instead}")
 
 
 def solve_static(
@@ -30,12 +37,8 @@ def solve_static(
     """Find the static deflection; see `SpaceModel.static`."""
     loads = summed_loads(load, scene.coordinates, scene.rope.length)
     check_points(rope, points)
-    critical = count_below(rope, -1e-13 * rope.unit)
-    if critical and not unstable:
-        raise SolveError(
-            f"the rope does not stay at rest: {exceeds(critical)}; "
-            "unstable=True answers all the same"
-        )
+    if not unstable:
+        refuse_growing(rope, "unstable=True answers all the same")
     own, near = ~rope.absent, check.NEAR * scene.rope.length
     along = {(coordinate, at * rope.longer): load for (coordinate, at), load in loads.items()}
     x = np.concatenate([within(rope.x, points or POINTS), [at for _, at in along]])
@@ -70,7 +73,7 @@ def solve_static(
         displacement=displacement[:, own],
         force=force[:, own],
         load=tuple(loads.items()),
-        critical_loads=critical,
+        critical_loads=len(growing(rope)) if unstable else 0,
         cost=Cost(
             method_of(scene), len(rope.length), rope.unknowns, sweeps=1, factorisations=len(solved)
         ),
@@ -173,14 +176,18 @@ def _same(shape: tuple[int, ...], value: float) -> Real:
 def _solved(system: Assembly, right: Real) -> LoadedFields:
     """Return motion and force of columns of loads (parts + 1, 6, columns)."""
     right = np.where(system.held[0, :, :, None], 0.0, right)[None]
-    none = np.zeros((1, system.parts, system.width, right.shape[3]))
+    # loads in balance do not say that a motion is free, any others do
+    any_other = system.apart(start(system, 1))[0]
+    any_other[system.held] = 0.0
+    right = np.concatenate([right, any_other], axis=3)
+    rows = system.together(right, np.zeros((1, system.parts, *right.shape[2:])))
     try:
-        x = system.factored().solve(system.together(right, none))
+        u, f = system.apart(system.factored().solve(rows))
     except SolveError:
-        x = np.full((1, 1, 1), np.nan)
-    if not np.isfinite(x).all() or np.abs(x).max() > 1e14 * np.abs(right).max():
+        u = f = None
+    if u is None or LoadedFields(u, f, right).lost(system, rows).any():
         raise SolveError(
             "the stiffness is singular to working precision: a rigid motion is free, or the "
             "compression is critical"
         )
-    return LoadedFields(*system.apart(x), right)
+    return LoadedFields(u[..., :-1], f[..., :-1], right[..., :-1])

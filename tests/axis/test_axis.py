@@ -200,3 +200,16 @@ def test_what_has_no_meaning_is_refused_by_name(what, message):
 def test_words_are_no_points():
     with pytest.raises(TypeError, match="xyz must be two or more points"):
         rd.Axis.points("here")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"kind": "arc", "radius": 1.0}, "axis.angle must be given of kind 'arc', got nothing"),
+        ({"kind": "ring", "radius": 1.0, "angle": 2.0}, "a key of axis of kind 'ring' must be"),
+        ({"kind": "catenary", "span": 9.0}, "axis.parameter must be given of kind 'catenary'"),
+    ],
+)
+def test_words_that_are_missing_or_unknown_are_named(words, message):
+    with pytest.raises(rd.SceneError, match=message):
+        rd.Axis.from_words(words)

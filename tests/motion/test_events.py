@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 import ropedyn as rd
 from ropedyn.motion.phases.components import Look
 from ropedyn.motion.phases.events import follow
-from ropedyn.motion.request import Run
+from ropedyn.motion.request import STRAIGHT, Run
 
 ROPE = rd.Rope(1.0, 0.4, bending_stiffness=1.54)
 DRAG = rd.ViscousDamping(1.0)
@@ -128,6 +128,7 @@ def followed(model, time, response):
     run = Run.of(
         model,
         time,
+        STRAIGHT,
         response=response,
         quantity="displacement",
         start=None,

@@ -222,9 +222,9 @@ RESONATOR = DEEP.replace(parts=[rd.Resonator(50.0, 1.0, 0.3)])
     ("scene", "how", "ask", "told"),
     [
         (DEEP, {"elements": 8}, lambda m: m.modes(1), "is of elements"),
-        (RESONATOR, {}, lambda m: m.modes(1), "got a resonator"),
-        (RESONATOR, {}, lambda m: m.count(below=1.0), "got a resonator"),
-        (RESONATOR, {}, lambda m: m.static({("z", 50.0): 1.0}), "got a resonator"),
+        (RESONATOR, {}, lambda m: m.modes(1), "got resonator"),
+        (RESONATOR, {}, lambda m: m.count(below=1.0), "got resonator"),
+        (RESONATOR, {}, lambda m: m.static({("z", 50.0): 1.0}), "got resonator"),
         (DEEP, {}, lambda m: m.modes(1, damped=True), "damped motion is not carried"),
         (
             DEEP.replace(damping=rd.RayleighDamping(0.1, 0.0)),

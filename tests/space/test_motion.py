@@ -5,8 +5,8 @@ import pytest
 
 import ropedyn as rd
 from ropedyn.cli.command import main
+from ropedyn.space import motion
 from ropedyn.space.model import compile_space
-from ropedyn.space.motion import SpaceTransfer
 
 TIME = np.linspace(0.0, 0.3, 401)
 LINE = rd.Scene(
@@ -160,7 +160,7 @@ def test_what_is_not_carried_is_refused_by_name(asked, message):
 
 
 def test_acceleration_where_a_force_jumps_is_infinite(monkeypatch):
-    monkeypatch.setattr(SpaceTransfer, "most", 1024)
+    monkeypatch.setattr(motion, "WORK", 1 << 15)
     with pytest.raises(rd.SceneError, match="which is infinite when what acts at"):
         MODEL.transient(TIME, drive=AT, force=rd.Step(1.0), quantity="acceleration")
 

@@ -160,3 +160,84 @@ def test_the_section_of_a_ring_does_not_turn():
     turned = ROD.replace(principal_angle=((0.0, LENGTH), (0.0, 1.0)), bending_stiffness=(1.0, 2.0))
     with pytest.raises(rd.SceneError, match="principal_angle along the rope must be left out"):
         rd.Scene(turned, planes="both")
+
+
+FREE = rd.Rope(rd.Axis.ring(1.0), 0.5, bending_stiffness=50.0, torsional_stiffness=30.0)
+PUSHED = [("x", 2.0), ("y", 3.0), ("z", 1.0)]
+"""How far a force on a free ring moves its own place, over 1/(mass omega^2), as a rigid one does:
+along it turns it by 1/R^2, across its plane by 2/R^2 about the diameter."""
+
+
+@pytest.mark.parametrize(("coordinate", "share"), PUSHED)
+def test_a_free_ring_is_pushed_as_a_rigid_body_or_refused(coordinate, share):
+    model, answered = rd.Scene(FREE, planes="both").compile(), 0
+    for f in 10.0 ** -np.arange(6.0, 24.0):
+        try:
+            frf = model.frf([f], drive=(coordinate, 0.4))
+        except rd.SolveError as refusal:
+            assert "has no correct digit" in str(refusal)
+            assert f < 1e-13
+            continue
+        answered += 1
+        exact = -share / (FREE.linear_density * FREE.length * (2 * math.pi * f) ** 2)
+        # what bends is 1e-13 of it at 1e-6 Hz
+        assert abs(frf.value[0, 0] / exact - 1) < frf.rounding_error[0, 0] + 1e-12
+    assert answered >= 8
+
+
+@pytest.mark.parametrize("coordinate", ["x", "y", "z", "alpha", "beta", "gamma"])
+@pytest.mark.parametrize("axial_stiffness", [None, 1e5])
+def test_a_free_ring_has_no_response_at_rest(coordinate, axial_stiffness):
+    rope = FREE.replace(axial_stiffness=axial_stiffness)
+    model = rd.Scene(rope, planes="both").compile()
+    for f in ([0.0], [3.0, 0.0, 10.0], [0.0, *np.linspace(1.0, 9.0, 40)]):
+        with pytest.raises(rd.SolveError, match=r"frequency 0\.0 Hz has no correct digit in \("):
+            model.frf(f, drive=(coordinate, 0.4))
+
+
+@pytest.mark.parametrize("unstable", [False, True])
+@pytest.mark.parametrize(
+    "axis",
+    [rd.Axis.ring(1.0), rd.Axis.arc(1.0, 2.0), rd.Axis.helix(0.1, 0.2, 30)],
+    ids=["ring", "arc", "helix"],
+)
+def test_loads_in_balance_do_not_hold_a_free_rope(axis, unstable):
+    ends = {} if axis.closed else {"ends": ("free", "free")}
+    model = rd.Scene(FREE.replace(length=axis), planes="both", **ends).compile()
+    for load in (
+        {("z", 0.0): 1.0, ("z", axis.length / 2): 1.0},
+        {("y", 0.3): 1.0, ("y", 0.6): -1.0},
+        {("alpha", 0.3): 1.0},
+    ):
+        with pytest.raises(rd.SolveError, match="a rigid motion is free"):
+            model.static(load, unstable=unstable)
+        with pytest.raises(rd.SceneError, match="the rope has no rest under a load"):
+            coordinate = next(iter(load))[0]
+            model.transient(np.linspace(0.0, 0.1, 6), start=load, response=(coordinate, 0.5))
+
+
+def test_a_free_helix_has_a_steady_state_and_no_critical_load():
+    """Counts below 0 have some of its rigid motions."""
+    rope = FREE.replace(length=rd.Axis.helix(0.1, 0.2, 30))
+    model = rd.Scene(rope, planes="both", ends=("free", "free")).compile()
+    stepped = model.stepped_sine([3.0], drive=("z", 0.5), amplitude=1.0)
+    assert stepped.value == pytest.approx(model.frf([3.0], drive=("z", 0.5)).value, rel=1e-12)
+
+
+def test_peaks_of_pairs_give_back_bending_and_torsion():
+    """Orders are those of modes that vibrate; a double mode is two."""
+    scene = rd.Scene(FREE, planes="both")
+    peaks = scene.compile().modes(14).frequency[6:]
+    guess = FREE.replace(bending_stiffness=45.0, torsional_stiffness=25.0)
+    fit = rd.identify(
+        scene.replace(rope=guess),
+        rd.Peaks(peaks, std=1e-4 * peaks),
+        ["bending_stiffness", "torsional_stiffness"],
+        orders=range(1, 9),
+    )
+    assert fit.status == "trusted"
+    assert [
+        fit.value[path] for path in ("bending_stiffness", "torsional_stiffness")
+    ] == pytest.approx([50.0, 30.0], rel=1e-12)
+    # and it says nothing of ends that a ring has not
+    assert not fit.said_of_ends

@@ -141,8 +141,8 @@ def identify(
         ``"calibration"`` is a real factor of either sign on all of it.
     orders : "auto", None or sequence of int, shape (k,)
         Which mode each peak is, from 1, and 0 where it is none. ``"auto"``: as the peaks say, and
-        where they do not by evidence. None: by evidence in any case. Of a rope on an axis they are
-        given, counted over both planes as by `SpaceModel.modes`.
+        where they do not by evidence. None: by evidence in any case. Rigid motions are no modes
+        here. Of a rope on an axis they are given, counted over both planes.
     ends : {"unknown", "given"}, optional
         Whether the rotational stiffness of both ends is unknown, from pinned to clamped, and in the
         intervals, or as the scene says. Unknown where left out if a straight rope bends and no such

@@ -33,7 +33,9 @@ class Remarks(Frozen):
 
 def other_ends(scene: Scene, unknown: tuple[str, ...], tell: Callable[[Scene], Told]) -> list[str]:
     """Say what both ends pinned and both clamped would tell of the same peaks."""
-    if "beta" not in scene.coordinates or any("ends[" in path for path in unknown):
+    axis = scene.rope.axis
+    has_none = "beta" not in scene.coordinates or (axis is not None and axis.closed)
+    if has_none or any("ends[" in path for path in unknown):
         return []
     first = tell(scene)
     shown = [end if isinstance(end, str) else "as described" for end in scene.ends]

@@ -65,7 +65,8 @@ def invert(run: Run, tolerance: float, kinds: list[str] | None = None) -> Moved:
             raise SolveError("the numbers overflow: check the units and the times")
         is_known = (moved.shares(kinds) <= tolerance).all()
         lines, numbers = 2 * line.grid.lines, 2 * line.value.size
-        if is_known or lines > line.transfer.most or numbers > MOST_NUMBERS:
+        most = line.transfer.most(2 * line.grid.omega) if not is_known else 0
+        if is_known or lines > most or numbers > MOST_NUMBERS:
             line.refuse_infinite(moved)
             return moved
         line = line.further()

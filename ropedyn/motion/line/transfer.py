@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -23,15 +23,18 @@ from ...response.question import Question
 from ...response.solvers import SOLVERS
 from ...scene import damping
 
+MOST = 1 << 19  # Rates.
+
 
 class TransferFunctions(Protocol):
     """What responses are to drives, in the rate s of a motion e^(s t)."""
 
-    most: ClassVar[int]  # rates are looked at, where times resolve fewer
-
     @property
     def growth(self) -> float:
         """How fast motion grows at most [1/s]."""
+
+    def most(self, omega: float) -> int:
+        """Return how many rates up to one [rad/s] are looked at, where times resolve fewer."""
 
     def at(self, s: Complex) -> Complex:
         """Return it, shape (drives, responses, n)."""
@@ -48,7 +51,6 @@ class Transfer:
     drives: tuple[Any, ...]  # forces, moments, motion of ends
     responses: tuple[Point, ...]  # motion, internal forces, tips of wires
     workers: int = 1  # threads
-    most: ClassVar[int] = 1 << 19
 
     @property
     def growth(self) -> float:
@@ -58,6 +60,10 @@ class Transfer:
         least = min((float(spectrum(model, c, 1)[0][0]) for c in pushed), default=0.0)
         pushes = bool((np.linalg.eigvalsh(stiffness) < 0).any())
         return growth_below(min(least, 0.0), model.scene.dampings, pushes=pushes)
+
+    def most(self, _omega: float) -> int:
+        """Return how many rates are looked at."""
+        return MOST
 
     def at(self, s: Complex) -> Complex:
         """Return it, shape (drives, responses, n)."""
