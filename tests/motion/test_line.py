@@ -3,6 +3,7 @@
 import mpmath as mp
 import numpy as np
 import pytest
+from dense_motion import Dense
 from linear_case import Exact, random_case
 
 import ropedyn as rd
@@ -200,6 +201,22 @@ def test_response_that_symmetry_holds_still_is_answered():
     asked = {"drive": ("z", LENGTH / 2), "force": rd.Step(1.0)}
     history = model.transient(TIME, **asked, response=[("z", LENGTH / 2), ("beta", LENGTH / 2)])
     assert np.abs(history.value[1]).max() < 1e-9 * np.abs(history.value[0]).max()
+
+
+@pytest.mark.parametrize("method", ["modal", "line"])
+def test_velocity_of_what_jumps_without_inertia_is_that_from_the_right(method):
+    damping = rd.RayleighDamping(1.0, 0.0)
+    scene = rd.Scene(ROPE, tension=TENSION, damping=damping)
+    model = scene.compile(elements=8, element="rigid")
+    turned = ("beta", LENGTH / 2)
+    dense = Dense(model)
+    moved, rate = dense.motion(TIME, load=dense.load(turned))
+    at = dense.at(*turned)
+    assert abs(moved[0, at]) > 0.1 * np.abs(moved[:, at]).max()  # at once
+    blow = {"quantity": "displacement", "force": rd.Impulse(1.0)}
+    for asked in ({"quantity": "velocity", "force": rd.Step(1.0)}, blow):
+        history = model.transient(TIME, drive=turned, response=turned, method=method, **asked)
+        assert (np.abs(history.value[0] - rate[:, at]) <= history.error[0]).all()
 
 
 def test_complex_moduli_have_no_meaning_in_time_beside_dashpots_either():

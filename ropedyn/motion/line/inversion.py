@@ -185,6 +185,8 @@ class Line:
 
     def refuse_infinite(self, moved: Moved) -> None:
         """Refuse by name what has no bound, as velocity where a blow at an instant hits a beam."""
+        if self._is_chain and self.run.model.chain.finite is not None:
+            return  # what jumps without inertia has its value from the right
         run, s = self.run, self._beyond[-2:]
         far = self._far[:, : len(run.responses), -2:]
         for d, (place, force) in enumerate(zip(run.places, self.forces)):
