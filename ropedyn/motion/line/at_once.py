@@ -27,7 +27,7 @@ LARGE = 4.0  # with which slow forces are followed by at most so much more than 
 
 def at_once(value: Complex, omega: float, slow: Complex) -> Expansion:
     """Return oscillators that do it, from values at omega LOOKS and at the least rate, slow."""
-    h = _fitted(value)
+    h = fitted(value)
     most = LARGE * np.abs(slow)
     for slower in SLOWER:
         fast = _oscillators(h, omega, slower)
@@ -48,7 +48,7 @@ def _oscillators(h: Real, omega: float, slower: float) -> Expansion:
     return Expansion(sigma, square, a, b, np.zeros(0), none, h[..., 0], still, math.inf)
 
 
-def _fitted(value: Complex) -> Real:
+def fitted(value: Complex) -> Real:
     """Return h_m/omega^m, shape (.., ORDER + 1)."""
     size = np.abs(value)
     most = size.max(axis=-1, keepdims=True)
@@ -75,3 +75,9 @@ def response(oscillators: Expansion, s: Complex) -> Complex:
     turn = 1 / (s * s + 2 * sigma * s + square)
     moving = oscillators.a @ turn + oscillators.b @ (s * turn)
     return np.asarray(moving + oscillators.rest[..., None])
+
+
+def at_once_by(oscillators: Expansion) -> Real:
+    """Return h_0, h_1 and h_2 of the oscillators, shape (drives, responses, 3)."""
+    a, b, sigma = oscillators.a, oscillators.b, oscillators.sigma
+    return np.stack([oscillators.rest, b.sum(axis=-1), (a - 2 * sigma * b).sum(axis=-1)], axis=-1)
