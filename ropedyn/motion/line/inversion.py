@@ -148,10 +148,13 @@ class Line:
             return wrong
         seen = at_once_by(fast)
         for d, force in enumerate(self.forces):
+            sudden = [one for one in _jumps(force, run.time) if any(one[1:])]
+            if not sudden:
+                continue
             looked = fitted(self._far[d, : len(run.responses), len(LOOKS) + 2 :])
             size = np.abs(looked)
             first = (size > LEADS * size.max(axis=-1, keepdims=True)).argmax(axis=-1)
-            for when, *sizes in _jumps(force, run.time):
+            for when, *sizes in sudden:
                 since = run.time - when
                 at = (since >= -SOON / omega) & (since <= 1 / self.grid.omega)
                 for n, jump in enumerate(sizes, run.order):
