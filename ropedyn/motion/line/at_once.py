@@ -27,7 +27,7 @@ LARGE = 4.0  # with which slow forces are followed by at most so much more than 
 
 def at_once(value: Complex, omega: float, slow: Complex) -> Expansion:
     """Return oscillators that do it, from values at omega LOOKS and at the least rate, slow."""
-    h = fitted(value)
+    h = _fitted(value)
     most = LARGE * np.abs(slow)
     for slower in SLOWER:
         fast = _oscillators(h, omega, slower)
@@ -48,7 +48,7 @@ def _oscillators(h: Real, omega: float, slower: float) -> Expansion:
     return Expansion(sigma, square, a, b, np.zeros(0), none, h[..., 0], still, math.inf)
 
 
-def fitted(value: Complex) -> Real:
+def _fitted(value: Complex) -> Real:
     """Return h_m/omega^m, shape (.., ORDER + 1)."""
     size = np.abs(value)
     most = size.max(axis=-1, keepdims=True)

@@ -28,7 +28,7 @@ from ..modal.convolution import convolve
 from ..modal.expansion import Expansion
 from ..moved import Moved
 from ..request import Run
-from .at_once import LOOKS, at_once, at_once_by, fitted, response
+from .at_once import LOOKS, at_once, at_once_by, response
 from .force_transform import transform
 from .grid import LEAST, Grid
 from .transfer import TransferFunctions
@@ -52,8 +52,7 @@ FAR = 1e4  # So many times the highest rate no mode of a chain is left: what is 
 NEAR = np.array([1.0, 2.0, FAR, 2 * FAR])  # Modes beyond it are told apart by so many times it.
 GROWS = 2.0**0.25  # What grows by this with the rate has no bound
 STRONG = 1e-3  # where it is more than this part of the largest value.
-LEADS = 1e-8  # What a chain does at once beyond all modes is told by terms of this size
-SOON = 1e-6  # within this part of the time of a fastest mode.
+SOON = 1e-6  # What jumps is there from so much before on, over the rate far beyond all modes.
 REACH = 4.0  # They reach so many times as far as the forces do, at first.
 
 
@@ -142,25 +141,22 @@ class Line:
 
         What strong damping holds is there at once as seen from the highest rate.
         """
-        run, omega = self.run, FAR * self.grid.omega
+        run, s = self.run, self._beyond[-1]
         wrong = np.zeros((len(run.responses), len(run.time)))
         if not self._is_chain:
             return wrong
         seen = at_once_by(fast)
+        far = self._far[:, : len(run.responses), -2:]
+        # what goes as 1/s^m there is m times smoother than the force
+        power = np.rint(np.log2(np.abs(far[..., 0]) / np.abs(far[..., 1])))
         for d, force in enumerate(self.forces):
-            sudden = [one for one in _jumps(force, run.time) if any(one[1:])]
-            if not sudden:
-                continue
-            looked = fitted(self._far[d, : len(run.responses), len(LOOKS) + 2 :])
-            size = np.abs(looked)
-            first = (size > LEADS * size.max(axis=-1, keepdims=True)).argmax(axis=-1)
-            for when, *sizes in sudden:
+            for when, *sizes in _jumps(force, run.time):
                 since = run.time - when
-                at = (since >= -SOON / omega) & (since <= 1 / self.grid.omega)
+                at = (since >= -SOON / abs(s)) & (since <= 1 / self.grid.omega)
                 for n, jump in enumerate(sizes, run.order):
-                    if n < seen.shape[-1]:
-                        truly = np.where(n == first, looked[:, n] * omega**n, 0.0)
-                        apart = np.where(n <= first, np.abs(seen[d, :, n] - truly), 0.0)
+                    if jump and n < seen.shape[-1]:
+                        truly = np.where(power[d] == n, (far[d, :, 1] * s**n).real, 0.0)
+                        apart = np.where(power[d] < n, 0.0, np.abs(seen[d, :, n] - truly))
                         wrong += np.multiply.outer(apart * abs(jump), at)
         return wrong
 
