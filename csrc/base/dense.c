@@ -1,6 +1,10 @@
 /* Small dense matrices, row by row. */
 #include "base/dense.h"
 
+#include <string.h>
+
+#include "base/lanes.h"
+
 static bool is_absent(size_t n, const double *A, size_t k)
 {
     for (size_t j = 0; j < n; j++)
@@ -53,4 +57,22 @@ void rd_dense_transpose(size_t n, size_t m, const double *A, double *B)
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < m; j++)
             B[j * n + i] = A[i * m + j];
+}
+
+RD_CLONES double rd_dense_inner(size_t n, const double *a, const double *b)
+{
+    lanes sum = {0};
+    size_t k = 0;
+    for (; k + RD_LANES <= n; k += RD_LANES) {
+        lanes x, y;
+        memcpy(&x, a + k, sizeof x);
+        memcpy(&y, b + k, sizeof y);
+        sum += x * y;
+    }
+    double all = 0;
+    for (int i = 0; i < RD_LANES; i++)
+        all += sum[i];
+    for (; k < n; k++)
+        all += a[k] * b[k];
+    return all;
 }

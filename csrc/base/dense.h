@@ -15,4 +15,7 @@ void rd_dense_multiply(size_t n, size_t k, size_t m, const double *A, const doub
 /* B (m, n) = A^T, A (n, m) */
 void rd_dense_transpose(size_t n, size_t m, const double *A, double *B);
 
+/* a^T b, of eight sums side by side */
+double rd_dense_inner(size_t n, const double *a, const double *b);
+
 #endif

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/lanes.h"
+#include "base/dense.h"
 
 enum { SWEEPS = 400 };
 static const double ENOUGH = 1e-15; /* a step holds where Q changes by this part of the largest, */
@@ -22,24 +22,6 @@ void rd_modal_work(const struct rd_modal *system, struct rd_workspace *workspace
                         &work->soft, &work->bent, &work->dragged, &work->kicked};
     for (size_t i = 0; i < sizeof array / sizeof *array; i++)
         *array[i] = rd_take(workspace, system->modes, sizeof(double));
-}
-
-RD_CLONES static double inner(size_t count, const double *a, const double *b)
-{
-    lanes sum = {0};
-    size_t k = 0;
-    for (; k + RD_LANES <= count; k += RD_LANES) {
-        lanes x, y;
-        memcpy(&x, a + k, sizeof x);
-        memcpy(&y, b + k, sizeof y);
-        sum += x * y;
-    }
-    double all = 0;
-    for (int i = 0; i < RD_LANES; i++)
-        all += sum[i];
-    for (; k < count; k++)
-        all += a[k] * b[k];
-    return all;
 }
 
 /* row^T f */
@@ -60,11 +42,12 @@ static double sweep(const struct rd_modal *system, struct rd_modal_work *work, d
     for (size_t k = 0; k < m; k++) {
         const double w = system->push[k] / 2;
         double own = t * system->form[k * (m + 1)], other;
-        work->bent[k] = inner(m, system->form + k * m, work->mean);
+        work->bent[k] = rd_dense_inner(m, system->form + k * m, work->mean);
         other = t * work->bent[k];
         if (system->drag != NULL) {
-            work->dragged[k] = inner(m, system->drag + k * m, work->mean);
-            other += rate * (work->dragged[k] - inner(m, system->drag + k * m, work->begun));
+            work->dragged[k] = rd_dense_inner(m, system->drag + k * m, work->mean);
+            other +=
+                rate * (work->dragged[k] - rd_dense_inner(m, system->drag + k * m, work->begun));
             own += rate * system->drag[k * (m + 1)];
         }
         const double stiff = 1 + w * own, before = work->mean[k];
@@ -85,7 +68,7 @@ static enum rd_status push_points(const struct rd_modal *system, struct rd_modal
     const size_t m = system->modes, n = system->laws.ports.count;
     for (size_t i = 0; i < n; i++) {
         const double *row = system->row + i * m;
-        work->step.lean[i] = inner(m, row, work->base) - work->step.start[i];
+        work->step.lean[i] = rd_dense_inner(m, row, work->base) - work->step.start[i];
         for (size_t j = 0; j <= i; j++) {
             const double *other = system->row + j * m;
             double sum = 0;
@@ -122,8 +105,8 @@ static enum rd_status solve(const struct rd_modal *system, struct rd_modal_work 
     const double given = system->tension[run->made];
     double before = INFINITY, first = 0;
     for (size_t k = 0; k < m && system->stretching > 0; k++) {
-        first += work->begun[k] * inner(m, system->form + k * m, work->begun);
-        work->bent[k] = inner(m, system->form + k * m, work->mean);
+        first += work->begun[k] * rd_dense_inner(m, system->form + k * m, work->begun);
+        work->bent[k] = rd_dense_inner(m, system->form + k * m, work->mean);
     }
     for (int i = 0; i < SWEEPS; i++) {
         *t = given + system->stretching / 2 * (first + 2 * rise(system, work));
@@ -160,7 +143,7 @@ static void begin(const struct rd_modal *system, struct rd_modal_work *work,
     }
     memcpy(work->step.force, run->force + at * n, n * sizeof(double));
     for (size_t i = 0; i < n; i++)
-        work->step.start[i] = inner(m, system->row + i * m, work->begun);
+        work->step.start[i] = rd_dense_inner(m, system->row + i * m, work->begun);
     kick(system, work);
     work->step.time = system->begin + ((double)at + 0.5) * system->h;
 }
@@ -173,11 +156,11 @@ static void carry(const struct rd_modal *system, const struct rd_modal_work *wor
     const double *q = run->state + at * 2 * m, *v = q + m, *change = system->change;
     double *next = run->state + (at + 1) * 2 * m, *pushed = run->pushed + (at + 1) * m;
     for (size_t k = 0; k < m; k++) {
-        pushed[k] = work->kicked[k] - t * inner(m, system->form + k * m, work->mean);
+        pushed[k] = work->kicked[k] - t * rd_dense_inner(m, system->form + k * m, work->mean);
         if (system->drag != NULL)
             pushed[k] -= 2 / system->h *
-                         (inner(m, system->drag + k * m, work->mean) -
-                          inner(m, system->drag + k * m, work->begun));
+                         (rd_dense_inner(m, system->drag + k * m, work->mean) -
+                          rd_dense_inner(m, system->drag + k * m, work->begun));
         next[k] = change[k] * q[k] + change[m + k] * v[k] + system->push[k] * pushed[k];
         next[m + k] =
             change[2 * m + k] * q[k] + change[3 * m + k] * v[k] + system->push[m + k] * pushed[k];

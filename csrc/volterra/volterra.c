@@ -1,26 +1,6 @@
 #include "volterra/volterra.h"
 
-#include <string.h>
-
-#include "base/lanes.h"
-
-RD_CLONES static double inner(size_t count, const double *a, const double *b)
-{
-    lanes sum = {0};
-    size_t k = 0;
-    for (; k + RD_LANES <= count; k += RD_LANES) {
-        lanes x, y;
-        memcpy(&x, a + k, sizeof x);
-        memcpy(&y, b + k, sizeof y);
-        sum += x * y;
-    }
-    double all = 0;
-    for (int i = 0; i < RD_LANES; i++)
-        all += sum[i];
-    for (; k < count; k++)
-        all += a[k] * b[k];
-    return all;
-}
+#include "base/dense.h"
 
 /* how point i moves by the end of step n without the forces of it */
 static double past(const struct rd_volterra *system, const double *force, size_t i, size_t n)
@@ -28,7 +8,8 @@ static double past(const struct rd_volterra *system, const double *force, size_t
     const size_t m = system->laws.ports.count, steps = system->steps;
     double sum = system->linear[i * (steps + 1) + n + 1];
     for (size_t j = 0; j < m; j++)
-        sum += inner(n, system->kernel + (i * m + j) * steps + steps - 1 - n, force + j * steps);
+        sum += rd_dense_inner(n, system->kernel + (i * m + j) * steps + steps - 1 - n,
+                              force + j * steps);
     return sum;
 }
 

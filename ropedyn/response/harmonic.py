@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..base import check
 from ..base.answer import Cost
 from ..base.array import Complex, Flags, Real
-from ..base.computed import Late, LateCall
+from ..base.computed import Late, LateCall, computed
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES
 from ..chain import tip
@@ -57,40 +57,20 @@ def solve_harmonic(
     responses = observed(model, response, drives)
     asked = tip.spread(model, responses)
     decay = check.number(decay, "decay", "1/s", sign="nonnegative")
-    omega = angular(f, decay)
-    factor = damping.factors(model.scene.dampings, omega).T
+    factor = damping.factors(model.scene.dampings, angular(f, decay)).T
     is_modal = bool(damping.having(model.scene.dampings, "ratio"))
     if is_modal:
         refuse_other_damping(model, drives, responses)
     whole = Question(model, model.coordinates, f, factor, list(drives), asked, workers, decay)
     got = by_components(whole, partial(modal_sum if is_modal else line_by_line, solver=solve))
-    value = tip.gather(model, responses, factor, got.value)
-    _refuse_overflow(f, value)
-    power = (1j * omega) ** QUANTITIES[quantity]
-    drive = slice(None) if several else 0
-    value = (value * power if QUANTITIES[quantity] else value)[drive]
-
-    def of_value(error: Real) -> Real:
-        found = tip.gather_error(model, responses, factor, got.value, error)
-        return np.asarray(found[drive] * np.abs(power))
-
-    def rounding() -> RoundingOfResponse:
-        error, certain = got.error() if tight else (got.bound(), np.zeros(got.value.shape, bool))
-        certain = tip.gather_flags(model, responses, certain)
-        return RoundingOfResponse.of(value, of_value(error), certain[drive])
-
-    mesh: MeshOfResponse | Callable[[], MeshOfResponse]
-    mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)
-    mesh = partial(mesh, decay=decay)
-    if model.element == "continuous":
-        truncation = tip.gather_error(model, responses, factor, 0 * got.value, got.truncation)
-        mesh = MeshOfResponse(relative(value, truncation[drive] * np.abs(power)))
+    found = _Found(whole, responses, quantity, slice(None) if several else 0, got)
+    _refuse_overflow(f, found.gathered)
     return FRF(
         drive=drives,
         response=responses,
         quantity=quantity,
         frequency=f,
-        value=value,
+        value=found.value,
         cost=Cost(
             solver,
             len(model.x) - 1,
@@ -98,14 +78,73 @@ def solve_harmonic(
             sweeps=2 * got.lines if solver == "sweep" else 0,
             factorisations=0 if solver == "sweep" else got.lines,
         ),
-        mesh=mesh,
-        rounding=Late(rounding),
-        solve_bound=LateCall(lambda: relative(value, of_value(got.bound()))),
+        mesh=found.mesh(),
+        rounding=Late(partial(found.rounding, tight)),
+        solve_bound=LateCall(found.bound),
         solve_rates=partial(
-            FrequencyRates, model, omega, drives, responses, got.answered, got.value
+            FrequencyRates, model, found.omega, drives, responses, got.answered, got.value
         ),
         decay=decay,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """What all components answered, and the quantity that is told of it."""
+
+    whole: Question
+    responses: tuple[Point, ...]
+    quantity: str
+    drive: slice | int  # all of them, or the only one
+    got: Receptance
+
+    @computed
+    def omega(self) -> Real | Complex:
+        """Angular frequencies, with what decays [rad/s]."""
+        return angular(self.whole.frequency, self.whole.decay)
+
+    @computed
+    def gathered(self) -> Complex:
+        """Motion and forces of tips too, (drives, responses, f)."""
+        whole = self.whole
+        return tip.gather(whole.model, self.responses, whole.factor, self.got.value)
+
+    @computed
+    def value(self) -> Complex:
+        """The quantity."""
+        power = QUANTITIES[self.quantity]
+        value = self.gathered * (1j * self.omega) ** power if power else self.gathered
+        return np.asarray(value[self.drive])
+
+    def of_value(self, solved: Complex, error: Real) -> Real:
+        """Return errors of the quantity from those of what was solved for."""
+        whole, power = self.whole, (1j * self.omega) ** QUANTITIES[self.quantity]
+        found = tip.gather_error(whole.model, self.responses, whole.factor, solved, error)
+        return np.asarray(found[self.drive] * np.abs(power))
+
+    def bound(self) -> Real:
+        """Bound its rounding, relative."""
+        return relative(self.value, self.of_value(self.got.value, self.got.bound()))
+
+    def rounding(self, tight: bool) -> RoundingOfResponse:
+        """Measure its rounding, or bound it."""
+        got = self.got
+        error, certain = got.error() if tight else (got.bound(), np.zeros(got.value.shape, bool))
+        certain = tip.gather_flags(self.whole.model, self.responses, certain)
+        wrong = self.of_value(got.value, error)
+        return RoundingOfResponse.of(self.value, wrong, certain[self.drive])
+
+    def mesh(self) -> MeshOfResponse | Callable[[], MeshOfResponse]:
+        """Return how far it is from the response without elements, or what tells it."""
+        whole, got = self.whole, self.got
+        if whole.model.element == "continuous":
+            return MeshOfResponse(
+                relative(self.value, self.of_value(0 * got.value, got.truncation))
+            )
+        asked = whole.model.scene, whole.frequency, tuple(whole.drives), self.responses
+        return partial(
+            mesh_of_frf, *asked, quantity=self.quantity, value=self.value, decay=whole.decay
+        )
 
 
 class Receptance(NamedTuple):

@@ -152,6 +152,17 @@ static void transpose_of_oblong_matrix(void)
     CHECK(memcmp(A, back, sizeof A) == 0);
 }
 
+static void inner_product_of_any_length(void)
+{
+    double a[21], b[21], sum = 0;
+    for (int k = 0; k < 21; k++) {
+        CHECK_EXACT(rd_dense_inner((size_t)k, a, b), sum);
+        a[k] = k + 1;
+        b[k] = k % 3 - 1;
+        sum += a[k] * b[k];
+    }
+}
+
 int main(void)
 {
     inverse_of_one_number();
@@ -167,5 +178,6 @@ int main(void)
     coupled_absent_coordinate_is_refused();
     product_of_oblong_matrices();
     transpose_of_oblong_matrix();
+    inner_product_of_any_length();
     return check_report("test_dense");
 }

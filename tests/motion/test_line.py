@@ -3,7 +3,8 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from linear_case import Exact, random_case
+from dense_motion import Dense
+from linear_case import Case, Exact, random_case
 
 import ropedyn as rd
 
@@ -100,6 +101,28 @@ def test_error_covers_motion_that_has_hardly_begun(method, span):
         exact = np.array([float(one[3, 7 + 1] / mp.mpf(M[1, 1])) for one in after])
     assert (np.abs(history.value[0, at] - exact) <= history.error[0, at]).all()
     assert history.error.max() <= 1e-3 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("gamma", [1e-3, 1e-2])
+def test_error_covers_the_instant_of_a_jump_that_strong_damping_holds(gamma):
+    """As seen from the rates that are looked at the acceleration jumps by more than it does."""
+    rope = rd.Rope(1.0, 0.4, bending_stiffness=1.54, rotary_inertia=1e-6)
+    damping, parts = rd.StiffnessDamping(gamma), [rd.Dashpot(0.375, 30.0)]
+    scene = rd.Scene(rope, tension=2830.0, damping=damping, parts=parts)
+    model = scene.compile(elements=16, element="rigid")
+    point, force, time = ("z", 0.25), rd.Step(1.0, time=0.05), np.linspace(0.0, 0.2, 401)
+    case = Case(model, time, point, force, point, "acceleration")
+    history = model.transient(time, **case.asked, tolerance=2e-3)
+    exact = Exact(case).value()
+    assert np.abs(exact).argmax() == 100
+    assert (np.abs(history.value[0] - exact) <= history.error[0]).all()
+
+
+def test_a_response_that_hardly_arrives_is_known():
+    """Between rates where it has no digit and those where it has all of them rounding is small."""
+    sample = Sample([880_248])
+    assert sample.raised == 0
+    assert sample.overlooked == 0
 
 
 @pytest.mark.parametrize("gamma", [1e-3, 3e-3])
@@ -200,6 +223,22 @@ def test_response_that_symmetry_holds_still_is_answered():
     asked = {"drive": ("z", LENGTH / 2), "force": rd.Step(1.0)}
     history = model.transient(TIME, **asked, response=[("z", LENGTH / 2), ("beta", LENGTH / 2)])
     assert np.abs(history.value[1]).max() < 1e-9 * np.abs(history.value[0]).max()
+
+
+@pytest.mark.parametrize("method", ["modal", "line"])
+def test_velocity_of_what_jumps_without_inertia_is_that_from_the_right(method):
+    damping = rd.RayleighDamping(1.0, 0.0)
+    scene = rd.Scene(ROPE, tension=TENSION, damping=damping)
+    model = scene.compile(elements=8, element="rigid")
+    turned = ("beta", LENGTH / 2)
+    dense = Dense(model)
+    moved, rate = dense.motion(TIME, load=dense.load(turned))
+    at = dense.at(*turned)
+    assert abs(moved[0, at]) > 0.1 * np.abs(moved[:, at]).max()  # at once
+    blow = {"quantity": "displacement", "force": rd.Impulse(1.0)}
+    for asked in ({"quantity": "velocity", "force": rd.Step(1.0)}, blow):
+        history = model.transient(TIME, drive=turned, response=turned, method=method, **asked)
+        assert (np.abs(history.value[0] - rate[:, at]) <= history.error[0]).all()
 
 
 def test_complex_moduli_have_no_meaning_in_time_beside_dashpots_either():

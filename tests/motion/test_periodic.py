@@ -212,6 +212,19 @@ def test_friction_beside_dampers_that_couple_modes_is_stepped(exponent):
         assert abs(stepped.value / exact.value - 1)[0, 0] <= stepped.rounding_error[0, 0]
 
 
+def test_internal_forces_beside_friction_that_hardly_rubs_are_those_without():
+    asked = {"drive": ("z", 0.25), "response": [("z", 0.5), ("F_z", 0.5), ("M_beta", 0.5)]}
+    how = {"damping": rd.RayleighDamping(20.0, 2e-4)}
+    plain, rubs = (
+        rubbed(1.0, parts=[rd.Dashpot(0.5, 1.5), *more], **how).compile(elements=4, element="rigid")
+        for more in ([], [rd.Dashpot(0.75, 1e-7, exponent=0.5)])
+    )
+    stepped = rubs.stepped_sine([17.0], amplitude=1.0, **asked)
+    assert stepped.cost.method == "steps"
+    off = abs(stepped.value / plain.frf([17.0], **asked).value - 1)
+    assert (off <= stepped.rounding_error).all()
+
+
 # --- what is refused -----------------------------------------------------------------------------
 
 

@@ -131,12 +131,18 @@ int py_laws_parse(PyObject *object, struct py_kept *kept, struct py_calls *calls
     return 0;
 }
 
-bool py_calls_python(const struct rd_laws *laws)
+PyThreadState *py_let_others(size_t laws, const int32_t *kind, int32_t given)
 {
-    for (size_t d = 0; d < laws->ports.count; d++)
-        if (laws->kind[d] == RD_GIVEN)
-            return true;
-    return false;
+    for (size_t d = 0; d < laws; d++)
+        if (kind[d] == given)
+            return NULL;
+    return PyEval_SaveThread();
+}
+
+void py_stop_others(PyThreadState *state)
+{
+    if (state != NULL)
+        PyEval_RestoreThread(state);
 }
 
 double *py_shared(struct py_kept *kept, PyObject *object, int dimensions, const npy_intp *shape,

@@ -25,8 +25,9 @@ PyObject *py_failure(const struct py_calls *calls, enum rd_status status);
 int py_laws_parse(PyObject *object, struct py_kept *kept, struct py_calls *calls,
                   struct rd_laws *laws);
 
-/* whether Python says one of them, which takes the GIL */
-bool py_calls_python(const struct rd_laws *laws);
+/* lets other threads run unless one of some laws is `given` by Python, until they are stopped again */
+PyThreadState *py_let_others(size_t laws, const int32_t *kind, int32_t given);
+void py_stop_others(PyThreadState *state);
 
 /* an array that the caller goes on with: it must be what it is taken for, no copy is made */
 double *py_shared(struct py_kept *kept, PyObject *object, int dimensions, const npy_intp *shape,

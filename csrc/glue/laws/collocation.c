@@ -122,14 +122,6 @@ static int parse_run(PyObject *const *object, struct py_collocation *call, PyObj
 
 /* --- the call ----------------------------------------------------------------------------------*/
 
-static bool calls_python(const struct py_collocation *call)
-{
-    for (size_t d = 0; d < call->laws.count; d++)
-        if (call->laws.kind[d] == RD_SMOOTH_CALL)
-            return true;
-    return false;
-}
-
 PyObject *py_collocate(PyObject *module, PyObject *arguments)
 {
     (void)module;
@@ -147,14 +139,9 @@ PyObject *py_collocate(PyObject *module, PyObject *arguments)
     if (py_workspace_allocate(&workspace) < 0)
         goto done;
     rd_collocation_work(&call.step, &workspace, &work);
-    enum rd_status status;
-    if (calls_python(&call)) {
-        status = rd_collocation_run(&call.step, &call.laws, &work, &call.run);
-    } else {
-        Py_BEGIN_ALLOW_THREADS
-        status = rd_collocation_run(&call.step, &call.laws, &work, &call.run);
-        Py_END_ALLOW_THREADS
-    }
+    PyThreadState *const others = py_let_others(call.laws.count, call.laws.kind, RD_SMOOTH_CALL);
+    const enum rd_status status = rd_collocation_run(&call.step, &call.laws, &work, &call.run);
+    py_stop_others(others);
     failure = py_failure(&call.calls, status);
     if (failure != NULL)
         result =

@@ -73,17 +73,6 @@ static int parse_arrays(PyObject *const *object, struct py_modal *call)
     return run->size == NULL ? -1 : 0;
 }
 
-static enum rd_status run(struct py_modal *call, struct rd_modal_work *work)
-{
-    enum rd_status status;
-    if (py_calls_python(&call->system.laws))
-        return rd_modal_run(&call->system, work, &call->run);
-    Py_BEGIN_ALLOW_THREADS
-    status = rd_modal_run(&call->system, work, &call->run);
-    Py_END_ALLOW_THREADS
-    return status;
-}
-
 PyObject *py_modal_steps(PyObject *module, PyObject *arguments)
 {
     (void)module;
@@ -105,7 +94,11 @@ PyObject *py_modal_steps(PyObject *module, PyObject *arguments)
     if (py_workspace_allocate(&workspace) < 0)
         goto done;
     rd_modal_work(&call.system, &workspace, &work);
-    failure = py_failure(&call.calls, run(&call, &work));
+    const struct rd_laws *const acts = &call.system.laws;
+    PyThreadState *const others = py_let_others(acts->ports.count, acts->kind, RD_GIVEN);
+    const enum rd_status status = rd_modal_run(&call.system, &work, &call.run);
+    py_stop_others(others);
+    failure = py_failure(&call.calls, status);
     if (failure != NULL)
         result = Py_BuildValue("ndO", (Py_ssize_t)call.run.made, call.run.residual, failure);
 done:

@@ -33,17 +33,6 @@ static int parse_arrays(PyObject *const *object, struct py_volterra *call)
     return call->run.size == NULL ? -1 : 0;
 }
 
-static enum rd_status run(struct py_volterra *call, size_t until, struct rd_law_step *work)
-{
-    enum rd_status status;
-    if (py_calls_python(&call->system.laws))
-        return rd_volterra_run(&call->system, until, work, &call->run);
-    Py_BEGIN_ALLOW_THREADS
-    status = rd_volterra_run(&call->system, until, work, &call->run);
-    Py_END_ALLOW_THREADS
-    return status;
-}
-
 PyObject *py_volterra(PyObject *module, PyObject *arguments)
 {
     (void)module;
@@ -71,7 +60,11 @@ PyObject *py_volterra(PyObject *module, PyObject *arguments)
         goto done;
     workspace.used = 0;
     rd_law_step_work(call.system.laws.ports.count, &workspace, &work);
-    failure = py_failure(&call.calls, run(&call, (size_t)until, &work));
+    const struct rd_laws *const acts = &call.system.laws;
+    PyThreadState *const others = py_let_others(acts->ports.count, acts->kind, RD_GIVEN);
+    const enum rd_status status = rd_volterra_run(&call.system, (size_t)until, &work, &call.run);
+    py_stop_others(others);
+    failure = py_failure(&call.calls, status);
     if (failure != NULL)
         result = Py_BuildValue("ndO", (Py_ssize_t)call.run.made, call.run.residual, failure);
 done:

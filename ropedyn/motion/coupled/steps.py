@@ -11,26 +11,13 @@ from ... import _core
 from ...base.array import Real
 from ...base.errors import SolveError
 from ..acting import core_numbers
-from ..smooth.collocation import Oscillating
 from ..smooth.laws import LawFailure
 from ..smooth.passage import LawPassage, Passed
 from ..smooth.steps import Steps
+from ..smooth.system import OutputTimes
 from .system import CoupledSystem
 
 BLOCK = 1 << 21  # So many numbers of states are kept at a time.
-
-
-class ConstantStep(NamedTuple):
-    """How modes move over a step, or a part of it, under a constant force."""
-
-    change: Real  # (2, 2, k) q and q' per q and q' at its beginning
-    push: Real  # (2, k) and per force
-
-    @classmethod
-    def of(cls, modes: Oscillating, h: float, theta: float = 1.0) -> ConstantStep:
-        """Return that of a part of a step."""
-        reached = modes.reached(h, theta)
-        return cls(reached.change, reached.pushed.sum(axis=0))
 
 
 class Stepper:
@@ -46,21 +33,21 @@ class Stepper:
             *core_numbers([one.law for one in system.acting]),
             tuple(one.law.call for one in system.acting),
         )
-        self._step: tuple[float, ConstantStep] | None = None
+        self._step: tuple[float, Real, Real] | None = None
 
     def take(self, begin: float, h: float, known: Real) -> StepsTaken:
         """Take steps from `begin`; known (steps + 1, k) is how the modes move by themselves."""
         system, number = self.system, len(known) - 1
         if self._step is None or self._step[0] != h:
-            self._step = h, ConstantStep.of(system.modes, h)
-        step = self._step[1]
+            reached = system.modes.reached(h, 1.0)
+            self._step = h, reached.change, reached.pushed.sum(axis=0)
         added = system.added(begin + h * np.arange(number + 1.0))
         state, pushed, force = (
             np.concatenate([one[None], np.zeros((number, *one.shape))])
             for one in (self.state, self.pushed, self.force)
         )
         made, residual, failure = _core.modal_steps(
-            (begin, h, step.change, step.push),
+            (begin, *self._step),
             self._laws,
             (
                 system.row,
@@ -130,15 +117,11 @@ class CoupledPassage(LawPassage):
         both = np.concatenate([found.pushed, rise], axis=1)
         self._look(block, both, found.state[:-1], is_last)
 
-    def _row(self, number: int, h: float, theta: float) -> tuple[Real, Real]:
-        if (h, theta, number) not in self._rows:
-            look, modes = self.system.looks[number], self.system.modes
-            some = modes.some(slice(0, 0), look.output)
-            own, forced = some.modal_rows(modes.reached(h, theta), look.order, h)
-            rise = (theta - 0.5) * some.seen if look.order == 2 else np.zeros_like(some.seen)
-            forced = np.concatenate([forced.sum(axis=1), rise], axis=1)
-            self._rows[h, theta, number] = own.reshape(len(own), -1), forced
-        return self._rows[h, theta, number]
+    def _sees(self, look: OutputTimes, h: float, theta: float) -> tuple[Real, Real]:
+        some = self.system.modes.some(slice(0, 0), look.output)
+        own, forced = some.modal_rows(some.reached(h, theta), look.order, h)
+        rise = (theta - 0.5) * some.seen if look.order == 2 else np.zeros_like(some.seen)
+        return own, np.concatenate([forced.sum(axis=1), rise], axis=1)
 
     def _failed(self, when: float, residual: float, failure: Any) -> Any:
         if failure is not None:

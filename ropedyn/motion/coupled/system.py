@@ -18,17 +18,16 @@ import numpy as np
 from ...base.array import Real
 from ...base.errors import SceneError
 from ...chain.compiled import Compiled
-from ...chain.port import Point, is_force, local, moving, ports
+from ...chain.port import Point, is_force, local, locate, moving, ports
 from ...chain.tip import is_tip
 from ...response.moved_end import is_end
 from ...scene.tension import Tension
 from ..acting import ActingLaw, acting_laws
-from ..modal.expansion import Expansion
-from ..modal_system import ChainModes, chain_modes
 from ..request import Run
 from ..smooth.collocation import Oscillating
 from ..smooth.laws import SmoothLaw
 from ..smooth.system import LawSystem, OutputTimes, shifted
+from .modes import AllModes
 
 FIRST = 512  # A run has so many steps at least.
 
@@ -40,6 +39,7 @@ class CoupledSystem(LawSystem):
     acting: list[ActingLaw]
     row: Real  # (laws, k) how modes move the laws' points
     push: Real  # (drives, k) and what drives
+    pulled: Real  # (outputs, k) what those asked for see per amplitude and tension beside the mean
     form: Real  # (k, k) G
     coupling: Real | None  # (k, k) C
     stretching: float  # EA/L [N/m]; 0: motion does not stretch
@@ -55,53 +55,34 @@ class CoupledSystem(LawSystem):
         looks: Sequence[OutputTimes],
     ) -> CoupledSystem:
         """Find the modes of a chain, in one plane or both, and what couples them."""
-        from scipy.linalg import block_diag
-
         model = run.model
         drive = [k for k, p in enumerate(run.places) if moving(p) in component]
         places = [run.places[k] for k in drive]
         acting = acting_laws(model, component)
-        refuse_points(model, [*places, *(one.point for one in acting)], outputs)
-        parts = [one for one in model.components if {*one} <= {*component}]
-        each = [chain_modes(model, part) for part in parts]
-        damping = [np.diag(one.system.damping) / 2 for one in each]
-        couplings = [one.system.coupling for one in each]
-        eigenvalue = np.concatenate([one.system.eigenvalue for one in each])
-        sigma, count = np.concatenate(damping), len(eigenvalue)
-
-        def moved(points: Sequence[Point]) -> Real:
-            rows = [_moved(model, c, one, points) for c, one in zip(parts, each)]
-            return np.concatenate(rows, axis=1)
-
-        push, seen = moved(places), np.concatenate([np.eye(count), moved(outputs)])
-        plain, none = np.zeros_like(seen), np.zeros((1, len(seen)))
-        of_none = {"b": plain[None], "p": np.zeros(0), "r": none[..., None][..., :0]}
-        of_none |= {"rest": none, "bound": none}
-        varies = tension_of(model, component)
-        coupled = any(c is not None for c in couplings)
+        refuse_points(model, [*places, *(one.point for one in acting)], outputs, run.order)
+        modes, varies = AllModes.of(model, component), tension_of(model, component)
+        count = len(modes.sigma)
+        seen, swept, pulled = modes.rows(outputs)
+        seen = np.concatenate([np.eye(count), seen])
+        swept = np.concatenate([np.zeros((count, count)), swept])
+        looks = [look._replace(output=shifted(look.output, count)) for look in looks]
+        if varies and pulled.any():  # which the first look alone asks for
+            looks.append(OutputTimes(slice(0, count), looks[0].time, 0))
+        push = modes.rows(places)[0]
         return cls(
             laws=[SmoothLaw(one.name, one.law.call) for one in acting],
-            modes=Oscillating(sigma, eigenvalue, np.eye(count), seen, plain),
-            driven=[
-                Expansion(sigma, eigenvalue, a=(seen * one)[None], beyond=np.inf, **of_none)
-                for one in push
-            ],
+            modes=Oscillating(modes.sigma, modes.eigenvalue, np.eye(count), seen, swept),
+            driven=[modes.driven(one, seen, swept) for one in push],
             pushes=[run.pushes[k] for k in drive],
             time=run.time,
-            looks=[look._replace(output=shifted(look.output, count)) for look in looks],
+            looks=looks,
             beyond=np.inf,
             acting=acting,
-            row=moved([one.point for one in acting]),
+            row=modes.rows([one.point for one in acting])[0],
             push=push,
-            form=block_diag(*(one.system.geometric for one in each)),
-            coupling=block_diag(
-                *(
-                    np.zeros_like(one.system.geometric) if c is None else c
-                    for one, c in zip(each, couplings)
-                )
-            )
-            if coupled
-            else None,
+            pulled=pulled,
+            form=modes.form,
+            coupling=modes.coupling,
             stretching=_stretching(model) if varies and varies.stretching else 0.0,
             pulsation=varies.pulsation if varies and varies.pulsates else None,
             pulsates_at=varies.frequency if varies and varies.pulsates else 0.0,
@@ -110,7 +91,7 @@ class CoupledSystem(LawSystem):
     @property
     def points(self) -> slice:
         """Outputs that are the amplitudes."""
-        return slice(len(self.modes.sigma))
+        return slice(0, len(self.modes.sigma))
 
     @property
     def is_plain(self) -> bool:
@@ -135,6 +116,18 @@ class CoupledSystem(LawSystem):
     def added(self, time: Real) -> Real:
         """Return what pulsation adds to the tension [N]."""
         return np.zeros(np.shape(time)) if self.pulsation is None else self.pulsation(time)
+
+    def told(self, looked: list[Real]) -> list[Real]:
+        """Return what was looked at, with what internal forces feel of a tension that varies."""
+        if self.looks[-1].output != self.points:
+            return looked
+        first, *others, Q = looked
+        return [first + self.pull(self.looks[0].time, Q)[: len(first)], *others]
+
+    def pull(self, time: Real, Q: Real) -> Real:
+        """Return what internal forces feel of the tension beside its mean, (outputs, t)."""
+        bent = np.einsum("kt,kl,lt->t", Q, self.form, Q, optimize=True)
+        return np.asarray((self.added(time) + self.stretching / 2 * bent) * (self.pulled @ Q))
 
 
 def _stretching(model: Compiled) -> float:
@@ -161,19 +154,9 @@ def moving_together(model: Compiled) -> list[tuple[str, ...]]:
 # --- points ---------------------------------------------------------------------------------------
 
 
-def _moved(
-    model: Compiled, component: tuple[str, ...], modes: ChainModes, points: Sequence[Point]
-) -> Real:
-    """Return how modes of a component move points, (points, k)."""
-    rows = np.zeros((len(points), len(modes.shape)))
-    mine = [k for k, point in enumerate(points) if moving(point) in component]
-    at = ports(model.chain.only(component), model.x, component, [points[k] for k in mine])
-    for k, node, row in zip(mine, at.node, at.row):
-        rows[k] = np.einsum("knc,nc->k", modes.shape[:, node : node + 2], row)
-    return rows
-
-
-def refuse_points(model: Compiled, places: Sequence[Any], outputs: Sequence[Point]) -> None:
+def refuse_points(
+    model: Compiled, places: Sequence[Any], outputs: Sequence[Point], order: int
+) -> None:
     """Refuse what amplitudes of modes do not tell."""
     why = "where steps follow all modes of a chain: the tension varies, or energy is asked for"
     if model.element == "continuous":
@@ -187,8 +170,12 @@ def refuse_points(model: Compiled, places: Sequence[Any], outputs: Sequence[Poin
                 "comes near it"
             )
     for point in outputs:
-        if is_force(point) or is_tip(point):
-            raise SceneError(f"response must be the motion of a point {why}, got {point}")
+        if is_tip(point):
+            raise SceneError(f"response must be of a point of the rope {why}, got {point}")
+        if is_force(point) and order:
+            raise SceneError(f'quantity must be "displacement" of {point} {why}')
+        if is_force(point) and locate(model.x, point[1])[1] is not None:
+            raise SceneError(f"response must be an internal force at a node {why}, got {point}")
     for point in places:
         if is_end(point):
             raise SceneError(f"drive must not be the motion of an end {why}, got {point}")
@@ -205,7 +192,12 @@ def _refuse_place(model: Compiled, place: Point, outputs: Sequence[Point], why: 
     if (at.row[0][: len(term)][inertia == 0] != 0).any():
         raise SceneError(f"forces and laws must act on coordinates with inertia {why}, got {place}")
     own = [p for p in outputs if moving(p) in component]
-    if any(local(chain, model.x, component, place, p) for p in own):
+    element, inside = locate(model.x, place[1])
+    if any(
+        local(chain, model.x, component, place, p)
+        or (is_force(p) and inside is not None and element == max(locate(model.x, p[1])[0] - 1, 0))
+        for p in own
+    ):
         raise SceneError(
             f"a response must not lie between the nodes beside a force {why}, got {place}"
         )

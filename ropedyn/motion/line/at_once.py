@@ -75,3 +75,9 @@ def response(oscillators: Expansion, s: Complex) -> Complex:
     turn = 1 / (s * s + 2 * sigma * s + square)
     moving = oscillators.a @ turn + oscillators.b @ (s * turn)
     return np.asarray(moving + oscillators.rest[..., None])
+
+
+def at_once_by(oscillators: Expansion) -> Real:
+    """Return h_0, h_1 and h_2 of the oscillators, shape (drives, responses, 3)."""
+    a, b, sigma = oscillators.a, oscillators.b, oscillators.sigma
+    return np.stack([oscillators.rest, b.sum(axis=-1), (a - 2 * sigma * b).sum(axis=-1)], axis=-1)

@@ -28,7 +28,7 @@ from ..modal.convolution import convolve
 from ..modal.expansion import Expansion
 from ..moved import Moved
 from ..request import Run
-from .at_once import LOOKS, at_once, response
+from .at_once import LOOKS, at_once, at_once_by, response
 from .force_transform import transform
 from .grid import LEAST, Grid
 from .transfer import TransferFunctions
@@ -52,6 +52,7 @@ FAR = 1e4  # So many times the highest rate no mode of a chain is left: what is 
 NEAR = np.array([1.0, 2.0, FAR, 2 * FAR])  # Modes beyond it are told apart by so many times it.
 GROWS = 2.0**0.25  # What grows by this with the rate has no bound
 STRONG = 1e-3  # where it is more than this part of the largest value.
+SOON = 1e-6  # What jumps is there from so much before on, over the rate far beyond all modes.
 REACH = 4.0  # They reach so many times as far as the forces do, at first.
 
 
@@ -124,7 +125,7 @@ class Line:
         # modes beyond the rates, where none is near their end, are seen by what they do there
         last = np.median(np.abs(smooth[:, -(grid.lines // LAST) :]), axis=1)
         alias += grid.omega / math.pi * last + self._unseen()
-        error = TIMES * differ + rounding + alias[:, None]
+        error = TIMES * differ + rounding + alias[:, None] + self._at_jumps(fast)
         return Moved(value, error, "line", lines=grid.lines)
 
     def _smooth(self) -> tuple[Expansion, Complex, Complex]:
@@ -135,6 +136,30 @@ class Line:
         force *= self.grid.s**self.run.order
         rest = self.value - response(fast, self.grid.s)
         return fast, force, np.einsum("drk,dk->rk", rest, force)
+
+    def _at_jumps(self, fast: Expansion) -> Real:
+        """Bound what is wrong at the instant when something jumps on a chain, (responses, t).
+
+        What strong damping holds is there at once as seen from the highest rate.
+        """
+        run, s = self.run, self._beyond[-1]
+        wrong = np.zeros((len(run.responses), len(run.time)))
+        if not self._is_chain:
+            return wrong
+        seen = at_once_by(fast)
+        far = self._far[:, : len(run.responses), -2:]
+        # what goes as 1/s^m there is m times smoother than the force
+        power = np.rint(np.log2(np.abs(far[..., 0]) / np.abs(far[..., 1])))
+        for d, force in enumerate(self.forces):
+            for when, *sizes in _jumps(force, run.time):
+                since = run.time - when
+                at = (since >= -SOON / abs(s)) & (since <= 1 / self.grid.omega)
+                for n, jump in enumerate(sizes, run.order):
+                    if jump and n < seen.shape[-1]:
+                        truly = np.where(power[d] == n, (far[d, :, 1] * s**n).real, 0.0)
+                        apart = np.where(power[d] < n, 0.0, np.abs(seen[d, :, n] - truly))
+                        wrong += np.multiply.outer(apart * abs(jump), at)
+        return wrong
 
     @property
     def _is_chain(self) -> bool:
@@ -186,10 +211,12 @@ class Line:
 
     def refuse_infinite(self, moved: Moved) -> None:
         """Refuse by name what has no bound, as velocity where a blow at an instant hits a beam."""
+        if self._is_chain and self.run.model.chain.finite is not None:
+            return  # what jumps without inertia has its value from the right
         run, s = self.run, self._beyond[-2:]
         far = self._far[:, : len(run.responses), -2:]
         for d, (place, force) in enumerate(zip(run.places, self.forces)):
-            for more, size in enumerate(_jumps(force, run.time)):
+            for more, size in enumerate(_largest(force, run.time)):
                 reach = np.abs(far[d] * s ** (run.order + more))
                 grows = reach[:, 1] > GROWS * reach[:, 0]
                 seen = size * reach[:, 1] > STRONG * np.abs(moved.value).max(axis=1)
@@ -266,25 +293,33 @@ def _rounding(transfer: TransferFunctions, s: Complex, value: Complex) -> Real:
     size = np.abs(value)
     bound = transfer.rounding(s[at])
     share = np.divide(bound, size[..., at], out=np.zeros_like(bound), where=size[..., at] > 0)
-    between = np.maximum(share[..., 1:], share[..., :-1])
+    # a part of the value, as where it is large, and a part that is there where it is not
+    part = np.minimum(share[..., 1:], share[..., :-1])
+    floor = np.maximum(bound[..., 1:], bound[..., :-1])
     width = np.diff(at)
     width[-1] += 1
-    return np.asarray(np.repeat(between, width, axis=-1) * size)
+    return np.asarray(np.repeat(part, width, axis=-1) * size + np.repeat(floor, width, axis=-1))
 
 
-def _jumps(force: Force, time: Real) -> tuple[float, float]:
-    """Return the largest jump of a force within times, and its largest blow at an instant."""
+def _jumps(force: Force, time: Real) -> list[tuple[float, float, float]]:
+    """Return when a force jumps within times, by how much, and the blow at that instant."""
     begin, end = float(time[0]), float(time[-1])
     inside = np.array([at for at in force.breaks if begin < at <= end])
     steps = force.value(inside) - force.value(np.nextafter(inside, -np.inf))
-    jump = np.abs(np.append(steps, force.value(time[:1]))).max()
-    blows = [abs(size) for at, size in force.blows if begin <= at <= end]
-    return float(jump), max(blows, default=0.0)
+    found = [(begin, float(force.value(time[:1])[0]), 0.0)]
+    found += [(at, step, 0.0) for at, step in zip(inside.tolist(), steps.tolist())]
+    return [*found, *((at, 0.0, size) for at, size in force.blows if begin <= at <= end)]
+
+
+def _largest(force: Force, time: Real) -> tuple[float, float]:
+    """Return the largest jump of a force within times, and its largest blow at an instant."""
+    _, jump, blow = np.abs(_jumps(force, time)).max(axis=0)
+    return float(jump), float(blow)
 
 
 def _excited(force: Force, time: Real, omega: float) -> tuple[float, float, float]:
     """Bound how far a force moves a mode from omega on, over r/omega^2, and derivatives of that."""
-    jump, blow = _jumps(force, time)
+    jump, blow = _largest(force, time)
     begin, end = float(time[0]), float(time[-1])
     inside = np.array([at for at in force.breaks if begin < at <= end])
     corners = force.rate(inside) - force.rate(np.nextafter(inside, -np.inf))

@@ -124,17 +124,24 @@ class StepsGoOn:
     def window(self, frequency: float, periods: range) -> Complex:
         """Follow some periods; return the mean of the amplitudes."""
         modes, omega, count = self.system.modes, 2 * np.pi * frequency, self.count
+        begin, h = periods[0] / frequency, 1 / (frequency * count)
         turn = np.exp(2j * np.pi / count * np.arange(count * len(periods) + 1))
         still = modes.square - omega**2 + 2j * omega * modes.sigma
         own = self.push.amplitude * self.system.push.sum(axis=0) / still
-        known = (own * turn[:, None]).real
+        known, rate = (own * turn[:, None]).real, (1j * omega * own * turn[:, None]).real
         first = np.stack([own.real, (1j * omega * own).real])
         stepper = Stepper(self.system, self.state - first)
-        found = stepper.take(periods[0] / frequency, 1 / (frequency * count), known)
+        found = stepper.take(begin, h, known)
         if found.error is not None:
             raise SolveError(f"frequency {frequency!r} Hz: a step does not converge")
         self.state = stepper.state + first
-        seen = modes.seen[len(modes.sigma) :] @ (known[:-1] + found.state[:-1, 0]).T
+        Q, V = found.state[:-1].transpose(1, 2, 0) + np.stack([known, rate])[:, :-1].transpose(
+            0, 2, 1
+        )
+        of = slice(len(modes.sigma), None)
+        seen = modes.seen[of] @ Q + modes.swept[of] @ V
+        time = np.asarray(begin + h * np.arange(len(turn) - 1.0))
+        seen += self.system.pull(time, Q)
         return np.asarray(amplitudes(seen, count).mean(axis=1))
 
 

@@ -112,33 +112,23 @@ class Oscillating:
 
         Shapes (outputs, inputs, 2, k) and (outputs, stages, inputs).
         """
-        a, b = self.seen, self.swept
-        at_once = np.zeros((len(a), STAGES, self.push.shape[1]))
-        for k in range(order):
-            later = lagrange(np.array([reached.theta]), order - 1 - k)[0] / h ** (order - 1 - k)
-            at_once += np.einsum("ok,ki,s->osi", b, self.push, later)
-            a, b = -b * self.square, a - 2 * self.sigma * b
-        change, pushed = reached.change, reached.pushed
-        own = a[:, None] * change[0] + b[:, None] * change[1]
-        forced = a[:, None] * pushed[:, 0] + b[:, None] * pushed[:, 1]
-        return own[:, None] * self.push.T[:, None], at_once + forced @ self.push
+        own, forced = self.modal_rows(reached, order, h)
+        return own[:, None] * self.push.T[:, None], forced @ self.push
 
     def modal_rows(self, reached: Reached, order: int, h: float) -> tuple[Real, Real]:
-        """Return outputs per (q, q') and per forces on each mode at the stages; `swept` is 0.
+        """Return outputs, differentiated, per (q, q') and per forces on each mode at the stages.
 
         Shapes (outputs, 2, k) and (outputs, stages, k).
         """
-        now, slope = self.seen, np.zeros_like(self.seen)
-        at_once = np.zeros((STAGES, 1))
-        if order == 1:
-            now, slope = slope, now
-        if order == 2:
-            at_once = lagrange(np.array([reached.theta]))[0][:, None]
-            now, slope = -self.seen * self.square, -2 * self.sigma * self.seen
+        a, b = self.seen, self.swept
+        at_once = np.zeros((len(a), STAGES, len(self.sigma)))
+        for k in range(order):
+            later = lagrange(np.array([reached.theta]), order - 1 - k)[0] / h ** (order - 1 - k)
+            at_once += b[:, None] * later[:, None]
+            a, b = -b * self.square, a - 2 * self.sigma * b
         change, pushed = reached.change, reached.pushed
-        own = now[:, None] * change[0] + slope[:, None] * change[1]
-        forced = now[:, None] * pushed[:, 0] + slope[:, None] * pushed[:, 1]
-        return own, forced + at_once * self.seen[:, None]
+        own = a[:, None] * change[0] + b[:, None] * change[1]
+        return own, at_once + a[:, None] * pushed[:, 0] + b[:, None] * pushed[:, 1]
 
 
 class Reached(NamedTuple):

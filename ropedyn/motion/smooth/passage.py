@@ -14,7 +14,7 @@ from ...base.errors import SolveError
 from .collocation import STAGES, nodes, tables
 from .laws import LawFailure, core_laws
 from .steps import SNAP, Steps, steps_between
-from .system import LawSystem
+from .system import LawSystem, OutputTimes
 
 BLOCK = 1 << 21  # So many numbers of states are kept at a time,
 ROWS = 4096  # and how so many places within a step are seen.
@@ -121,9 +121,11 @@ class LawPassage:
         if (h, theta, number) not in self._rows:
             if len(self._rows) > ROWS:
                 self._rows.clear()
-            system, look = self.system, self.system.looks[number]
-            some = system.modes.some(system.points, look.output)
-            own, forced = some.rows(some.reached(h, theta), look.order, h)
-            flat = own.reshape(len(own), -1), forced.reshape(len(own), -1)
-            self._rows[h, theta, number] = flat
+            rows = self._sees(self.system.looks[number], h, theta)
+            own, forced = (one.reshape(len(one), -1) for one in rows)
+            self._rows[h, theta, number] = own, forced
         return self._rows[h, theta, number]
+
+    def _sees(self, look: OutputTimes, h: float, theta: float) -> tuple[Real, Real]:
+        some = self.system.modes.some(self.system.points, look.output)
+        return some.rows(some.reached(h, theta), look.order, h)

@@ -72,7 +72,7 @@ def _is_told(run: Run) -> bool:
         return False
     places = [*run.places, *(one.point for one in acting_laws(model))]
     try:
-        refuse_points(model, places, run.responses)
+        refuse_points(model, places, run.responses, run.order)
     except SceneError:
         return False
     return True
@@ -148,7 +148,7 @@ def agree(
     while True:
         passed = passage(system, h).through(run.progress)
         stages += passed.stages
-        looked = [own + more for own, more in zip(linear, passed.looked)]
+        looked = system.told([own + more for own, more in zip(linear, passed.looked)])
         found = Agreed(
             looked,
             np.full(looked[0].shape, np.inf),

@@ -17,6 +17,7 @@ from ...base.errors import SolveError
 from ..coupled.system import CoupledSystem
 from .collocation import STAGES, lagrange, nodes
 from .passage import LawPassage, Passed
+from .system import OutputTimes
 
 MOST = 40  # Newton steps.
 ENOUGH, LEAST = 1e-13, 1e-10  # They end here, or here where rounding lets gaps fall no more.
@@ -61,13 +62,9 @@ class StretchedPassage(LawPassage):
                 return Passed(self.looked, block.end, done * STAGES, error)
         return Passed(self.looked, float(self.system.time[-1]), done * STAGES)
 
-    def _row(self, number: int, h: float, theta: float) -> tuple[Real, Real]:
-        if (h, theta, number) not in self._rows:
-            look, modes = self.system.looks[number], self.system.modes
-            some = modes.some(slice(0, 0), look.output)
-            own, forced = some.modal_rows(modes.reached(h, theta), look.order, h)
-            self._rows[h, theta, number] = own.reshape(len(own), -1), forced.reshape(len(own), -1)
-        return self._rows[h, theta, number]
+    def _sees(self, look: OutputTimes, h: float, theta: float) -> tuple[Real, Real]:
+        some = self.system.modes.some(slice(0, 0), look.output)
+        return some.modal_rows(some.reached(h, theta), look.order, h)
 
 
 class StretchedStep(NamedTuple):
