@@ -75,8 +75,8 @@ def main() -> None:
     text = f"""# Lines and shapes where the tension grows
 
 {report.machine()}.
-The least processor time of {REPEAT} calls in ms, compiling included: ten modes, the shapes of twelve
-beside their frequencies, and {COUNT} lines up to the tenth mode.
+The least processor time of {REPEAT} calls in ms, compiling included: ten modes, the shapes of
+twelve beside their frequencies, and {COUNT} lines up to the tenth mode.
 
 {table}
 """

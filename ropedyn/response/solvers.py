@@ -61,7 +61,7 @@ def _walk(question: Question) -> Complex:
     value = np.empty(shape, dtype=np.complex128)
     for lines in bands(question.frequency):
         band = question.at(lines)
-        known = _between(band) if is_many(band.frequency) else None
+        known = _between(band) if is_many(band.frequency) else ()
         value[..., lines] = _unassembled(
             band, partial(_core.sweep, chain), steps, SWEEP_SLICE, known=known
         )[0]
@@ -116,23 +116,18 @@ def _ports(question: Question) -> tuple[Ports, Ports, bool]:
 
 Core = Callable[..., tuple[Complex, Real, int]]
 """What answers factors, drives and responses, beside what is known."""
+Known = tuple[Complex, Real, Real] | tuple[()]
 
 
 def _unassembled(
-    question: Question,
-    core: Core,
-    steps: int,
-    size: int,
-    *,
-    lanes: int = LANES,
-    known: tuple[Complex, Real, Real] | None = None,
+    question: Question, core: Core, steps: int, size: int, *, lanes: int = LANES, known: Known = ()
 ) -> tuple[Complex, Real]:
     """Ask the core for motion and internal forces, `size` steps times frequencies at a time."""
     factor = question.factor
     pushed, watched, reactions = _ports(question)
 
     def solve(part: slice) -> tuple[Complex, Real]:
-        beside = () if known is None else ((*known[:2], known[2][part]),)
+        beside = ((*known[:2], known[2][part]),) if known else ()
         value, error, solved = core(np.ascontiguousarray(factor[:, part]), pushed, watched, *beside)
         if solved < value.shape[2]:
             raise question.resonance(part.start + solved)

@@ -150,7 +150,7 @@ class Factored:
         return found.swapaxes(1, 2), forms[:, 0], forms[:, 1]
 
 
-class Parts(NamedTuple):
+class SpaceParts(NamedTuple):
     """The parts of a component at each line, before anything stands between them."""
 
     matrices: Complex  # (3, n, parts, width, width) D, G and Q
@@ -158,7 +158,9 @@ class Parts(NamedTuple):
     missed: Real  # (3, parts) what they may be off beside rounding, of the largest entries
 
 
-def parts_at(rope: SpaceRope, which: Index, factors: Factors, z: Real, *, equal: int = 1) -> Parts:
+def parts_at(
+    rope: SpaceRope, which: Index, factors: Factors, z: Real, *, equal: int = 1
+) -> SpaceParts:
     """Return so many equal parts of each piece, or more, all below their resonances."""
     rates = scaled_rates(rope.rates(which, factors), z)
     size = size_of(rates).max(axis=(0, 2))
@@ -176,7 +178,7 @@ def parts_at(rope: SpaceRope, which: Index, factors: Factors, z: Real, *, equal:
     for p, (first, triple) in enumerate(zip(node[:-1], triples)):
         # parts that are alike are one, or all that lie one after another are there
         matrices[:, :, first : node[p + 1]] = np.moveaxis(triple, 2, 0)
-    return Parts(matrices, node, np.zeros((3, node[-1])))
+    return SpaceParts(matrices, node, np.zeros((3, node[-1])))
 
 
 def assemble(
@@ -186,7 +188,7 @@ def assemble(
     z: Real,
     *,
     equal: int = 1,
-    parts: Parts | None = None,
+    parts: SpaceParts | None = None,
 ) -> Assembly:
     """Return the parts of a component at each line: so many equal ones of each piece, or more.
 

@@ -10,7 +10,7 @@ import numpy as np
 from ..base.array import Index, Real
 from ..base.chebyshev import fitted
 from ..response.bands import between
-from .assembly import Parts, parts_at
+from .assembly import SpaceParts, parts_at
 from .rope import Factors, SpaceRope
 
 NODES = 40
@@ -50,13 +50,13 @@ class Between(NamedTuple):
         flat = np.ascontiguousarray(values).reshape(NODES, -1).view(np.float64)
         return cls(weight, flat, values.shape[1:], parts.node, missed)
 
-    def at(self, lines: slice, z: Real) -> Parts:
+    def at(self, lines: slice, z: Real) -> SpaceParts:
         """Return the parts at some lines."""
         weight = self.weight[lines]
         blocks = np.array_split(self.values, -(-self.values.shape[1] // TOGETHER), axis=1)
         values = np.concatenate([weight @ one for one in blocks], axis=1).view(np.complex128)
         matrices = np.moveaxis(values.reshape(len(weight), *self.shape), 0, 1) * _scales(z)
-        return Parts(matrices, self.node, self.missed)
+        return SpaceParts(matrices, self.node, self.missed)
 
 
 def _scales(z: Real) -> Real:
