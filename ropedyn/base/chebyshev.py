@@ -32,7 +32,6 @@ def weights(count: int, places: Real) -> Real:
     far = np.asarray(places)[..., None] - nodes_of(count)
     own = far == 0
     weight = np.sin(angle) * (-1.0) ** np.arange(count) / np.where(own, 1.0, far)
-    met = own.any(axis=-1, keepdims=True)
-    weight = np.where(met, own, weight)
+    weight = np.where(own.any(axis=-1, keepdims=True), own, weight)
     found: Real = weight / weight.sum(axis=-1, keepdims=True)
     return found

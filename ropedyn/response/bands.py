@@ -1,8 +1,4 @@
-"""Bands of frequencies with so many lines that those between a few are interpolated.
-
-What is interpolated are pieces that end below their own resonances, and are analytic in the
-frequency up to these.
-"""
+"""Bands of lines, of which a few tell the others: what is interpolated ends below resonances."""
 
 from __future__ import annotations
 

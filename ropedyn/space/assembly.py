@@ -159,7 +159,7 @@ class SpaceParts(NamedTuple):
 
 
 def parts_at(
-    rope: SpaceRope, which: Index, factors: Factors, z: Real, *, equal: int = 1
+    rope: SpaceRope, which: Index, factors: Factors, z: Real, equal: int = 1
 ) -> SpaceParts:
     """Return so many equal parts of each piece, or more, all below their resonances."""
     rates = scaled_rates(rope.rates(which, factors), z)
@@ -182,20 +182,13 @@ def parts_at(
 
 
 def assemble(
-    rope: SpaceRope,
-    which: Index,
-    factors: Factors,
-    z: Real,
-    *,
-    equal: int = 1,
-    parts: SpaceParts | None = None,
+    rope: SpaceRope, which: Index, factors: Factors, z: Real, parts: SpaceParts | None = None
 ) -> Assembly:
-    """Return the parts of a component at each line: so many equal ones of each piece, or more.
+    """Return a component at each line, of parts that are known or of as few as there may be.
 
     which : (n,) or (1,) where it is the same at all n lines.
-    parts : those that are known.
     """
-    parts = parts or parts_at(rope, which, factors, z, equal=equal)
+    parts = parts or parts_at(rope, which, factors, z)
     (D, G, Q), node, missed = parts
     width, blocks = z.shape[1], rope.blocks
     for p in rope.kinks:

@@ -13,15 +13,11 @@ from ..response.bands import between
 from .assembly import SpaceParts, parts_at
 from .rope import Factors, SpaceRope
 
-NODES = 40
-"""Lines between which others are interpolated.
-
-Parts end below their resonances (`GENTLE`); of the nearest, those of strings, 32 left 1e-14."""
+NODES = 40  # Of a band. Parts end below their resonances; of strings, the nearest, 32 left 1e-14.
 MISSED = 1e-14
 """The last two coefficients, of the largest entry of a matrix, beyond which a band is halved."""
 
-TOGETHER = 64
-"""Numbers of a line that are one product: of more, threads of BLAS wait for each other."""
+TOGETHER = 64  # Numbers of a line in a product: of more, threads of BLAS wait for each other.
 
 
 class Between(NamedTuple):

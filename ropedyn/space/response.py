@@ -248,12 +248,11 @@ class Request:
         for side in self.components:
             for lines, between in self._bands(side.which):
                 for first in range(0, len(lines), AT_ONCE):
-                    at_once = slice(first, first + AT_ONCE)
-                    some = lines[at_once]
+                    some = lines[at_once := slice(first, first + AT_ONCE)]
                     factors = Factors(*(one[some] for one in self.factors))
                     z = self.rope.scale(side.which, np.abs(factors.inertia))
                     parts = between.at(at_once, z) if between else None
-                    yield side, some, assemble(self.rope, side.which, factors, z, parts=parts)
+                    yield side, some, assemble(self.rope, side.which, factors, z, parts)
 
     def _bands(self, which: Index) -> Iterator[tuple[Index, Between | None]]:
         """Yield lines, and between which others they lie where they are many."""
@@ -267,9 +266,8 @@ class Request:
             between = Between.of(self.rope, which, frequency, self.factors_at)
             if between.missed.max() <= MISSED:
                 yield lines, between
-                continue
-            upper = frequency > (frequency[0] + frequency[-1]) / 2
-            left += [lines[~upper], lines[upper]]
+            else:
+                left += np.array_split(lines, 2)
 
     def _solved(self, system: Assembly, side: AskedPart, lines: Index, end: int) -> LoadedFields:
         """Return motion and force of unit loads on drives (0) or responses (1)."""
