@@ -56,8 +56,14 @@ def certify(
 def steps(chain: Chain, factor: _Complex, /) -> int: ...
 def scales(chain: Chain, factor: _Complex, /) -> _Real: ...
 def sweep(
-    chain: Chain, factor: _Complex, drives: _Ports, responses: _Ports, /
+    chain: Chain,
+    factor: _Complex,
+    drives: _Ports,
+    responses: _Ports,
+    between: tuple[_Complex, _Real, _Real] | None = None,
+    /,
 ) -> tuple[_Complex, _Real, int]: ...
+def sweep_between(chain: Chain, nodes: _Complex, /) -> _Real: ...
 def damped(
     chain: Chain,
     constant: _Complex,
@@ -143,7 +149,14 @@ def closed_chain_count(
     kind: str, numbers: _Real, hinge: NDArray[np.uint8], omega: float, /
 ) -> NDArray[np.int64]: ...
 def space_triples(
-    rates: _Complex, series: _Real, length: float, halvings: int, doublings: int, gentle: float, /
+    rates: _Complex,
+    series: _Real,
+    length: float,
+    equal: int,
+    halvings: int,
+    doublings: int,
+    gentle: float,
+    /,
 ) -> tuple[_Complex, int, bool]: ...
 def space_factor(
     D: _Complex,

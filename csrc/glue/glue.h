@@ -118,6 +118,7 @@ PyObject *py_steps(PyObject *module, PyObject *arguments);
 PyObject *py_damped(PyObject *module, PyObject *arguments);
 PyObject *py_scales(PyObject *module, PyObject *arguments);
 PyObject *py_sweep(PyObject *module, PyObject *arguments);
+PyObject *py_sweep_between(PyObject *module, PyObject *arguments);
 PyObject *py_triple(PyObject *module, PyObject *arguments);
 PyObject *py_mixed(PyObject *module, PyObject *arguments);
 PyObject *py_mixed_deflection(PyObject *module, PyObject *arguments);

@@ -28,7 +28,9 @@ static PyMethodDef methods[] = {
     {"steps", py_steps, METH_VARARGS, "steps(chain, factor): of the longest walk"},
     {"scales", py_scales, METH_VARARGS, "scales(chain, factor) -> (width, f) of motion"},
     {"sweep", py_sweep, METH_VARARGS,
-     "sweep(chain, factor, drives, responses) -> value, error, frequencies solved"},
+     "sweep(chain, factor, drives, responses, between=None) -> value, error, frequencies solved"},
+    {"sweep_between", py_sweep_between, METH_VARARGS,
+     "sweep_between(chain, nodes) -> values at these factors, between which others lie"},
     {"damped", py_damped, METH_VARARGS,
      "damped(chain, constant, linear, radius, edge, horizon, guess) -> value, error, count, "
      "radius, "
@@ -46,7 +48,8 @@ static PyMethodDef methods[] = {
      "carried_slopes(chain, shape, motion, eigenvalue) -> slopes by m and k, by the row of the "
      "foot"},
     {"space_triples", py_space_triples, METH_VARARGS,
-     "space_triples(rates, series, length, halvings, doublings, gentle) -> triples, doublings, "
+     "space_triples(rates, series, length, equal, halvings, doublings, gentle) -> triples, "
+     "doublings, "
      "whole"},
     {"space_factor", py_space_factor, METH_VARARGS,
      "space_factor(D, G, Q, N, fixed, closed) -> factors, pivots, failed"},

@@ -5,7 +5,10 @@
 
 #include <string.h>
 
-enum { MOST = 60 }; /* halvings and doublings */
+enum {
+    MOST = 60,            /* halvings and doublings */
+    EQUAL_MOST = 1 << 17, /* parts of a piece */
+};
 
 static int check_power(int value, const char *name)
 {
@@ -16,12 +19,13 @@ static int check_power(int value, const char *name)
 }
 
 /* the shape of `series` is (nodes, fields, RD_SPACE_ORDERS); 0, or -1 and an exception */
-static int check_nodes(int nodes, int halvings, const char *name)
+static int check_nodes(int nodes, int equal, int halvings, const char *name)
 {
     if (nodes == 1 ||
-        (nodes > 1 && nodes <= RD_SPACE_NODES && (halvings > 8 || nodes <= 1 << halvings)))
+        (nodes > 1 && nodes <= RD_SPACE_NODES && (halvings > 8 || nodes <= equal << halvings)))
         return 0;
-    PyErr_Format(PyExc_ValueError, "%s must be from 1 to %d and at most 2^halvings, got %d", name,
+    PyErr_Format(PyExc_ValueError,
+                 "%s must be from 1 to %d and at most the parts of all halvings, got %d", name,
                  RD_SPACE_NODES, nodes);
     return -1;
 }
@@ -44,9 +48,13 @@ PyObject *py_space_triples(PyObject *module, PyObject *arguments)
     struct rd_space_run run;
     double gentle;
     int doublings, reached = 0, whole = 0;
-    if (!PyArg_ParseTuple(arguments, "OOdiid", &rates, &series, &run.length, &run.halvings,
-                          &doublings, &gentle))
+    if (!PyArg_ParseTuple(arguments, "OOdiiid", &rates, &series, &run.length, &run.equal,
+                          &run.halvings, &doublings, &gentle))
         return NULL;
+    if (run.equal < 1 || run.equal > EQUAL_MOST) {
+        PyErr_Format(PyExc_ValueError, "equal must be from 1 to %d, got %d", EQUAL_MOST, run.equal);
+        return NULL;
+    }
     if (check_power(run.halvings, "halvings") < 0 || check_power(doublings, "doublings") < 0)
         return NULL;
     const double _Complex *E =
@@ -64,11 +72,13 @@ PyObject *py_space_triples(PyObject *module, PyObject *arguments)
     run.width = (size_t)width;
     run.fields = (size_t)fields;
     run.nodes = (int)py_kept_length(&kept, 0);
-    if (check_nodes(run.nodes, run.halvings, "series") < 0)
+    if (check_nodes(run.nodes, run.equal, run.halvings, "series") < 0)
         goto done;
     if (doublings > run.halvings && run.nodes > 1)
         doublings = run.halvings;
-    const npy_intp parts = run.nodes == 1 ? 1 : (npy_intp)1 << (run.halvings - doublings);
+    /* nobody has room for more than are shifted out of sight */
+    const int left = run.halvings - doublings < 40 ? run.halvings - doublings : 40;
+    const npy_intp parts = run.nodes == 1 ? 1 : (npy_intp)run.equal << left;
     triple = py_new(NPY_CDOUBLE, 5, (npy_intp[]){lines, parts, 3, width, width});
     if (triple == NULL)
         goto done;
@@ -345,7 +355,7 @@ static int rope_parse(PyObject *object, struct py_kept *kept, struct rd_space *r
     npy_intp rows = 0;
     for (npy_intp p = 0; rope->nodes != NULL && p < n; p++) {
         if (check_power(rope->halvings[p], "halvings") < 0 ||
-            check_nodes(rope->nodes[p], rope->halvings[p], "nodes") < 0)
+            check_nodes(rope->nodes[p], 1, rope->halvings[p], "nodes") < 0)
             return -1;
         rows += rope->nodes[p];
     }

@@ -209,22 +209,61 @@ RD_INLINE void interpolate(int nodes, const double *weight, const cv at_nodes[][
     }
 }
 
+/* Values at the nodes by pairs that lie opposite each other: half their sums and half their differences,
+   and the value in the middle where there is one. A polynomial at x and at -x has the same even part, and
+   its odd part with the other sign. */
+struct opposite {
+    int pairs, nodes;
+    cv even[RD_NODES_MOST / 2][ALL], odd[RD_NODES_MOST / 2][ALL];
+    const cv *middle;
+};
+
+RD_INLINE void opposite_fill(int n, const cv at_nodes[][RD_GRADED_TRIPLE], struct opposite *o)
+{
+    o->pairs = n / 2;
+    o->nodes = n;
+    o->middle = n % 2 ? at_nodes[n / 2] : NULL;
+    for (int j = 0; j < o->pairs; j++)
+        for (int i = 0; i < ALL; i++) {
+            const cv one = at_nodes[j][i], other = at_nodes[n - 1 - j][i];
+            o->even[j][i] = c_scale(c_add(one, other), 0.5);
+            o->odd[j][i] = c_scale(c_sub(one, other), 0.5);
+        }
+}
+
+/* where the nodes count for `weight`, and opposite to there */
+RD_INLINE void interpolate_both(const struct opposite *o, const double *weight, cv *there,
+                                cv *opposite)
+{
+    const int n = o->nodes;
+    for (int i = 0; i < ALL; i++) {
+        cv even = o->middle ? c_scale(o->middle[i], weight[n / 2]) : c_zero(), odd = c_zero();
+        for (int j = 0; j < o->pairs; j++) {
+            even = c_add(even, c_scale(o->even[j][i], weight[j] + weight[n - 1 - j]));
+            odd = c_add(odd, c_scale(o->odd[j][i], weight[j] - weight[n - 1 - j]));
+        }
+        there[i] = c_add(even, odd);
+        opposite[i] = c_sub(even, odd);
+    }
+}
+
 /* pieces about the nodes of the part of the block where they are whole, in units of half of it; `part`
-   of the block is a piece's length */
+   of the block is a piece's length. The piece on the right of a node lies opposite to that on the left
+   of the opposite node. */
 RD_INLINE void family_double(int n, double part, cv from[][RD_GRADED_TRIPLE],
                              cv to[][RD_GRADED_TRIPLE])
 {
     double node[RD_NODES_MOST], weight[RD_NODES_MOST];
+    cv left[RD_NODES_MOST][ALL], right[RD_NODES_MOST][ALL];
+    struct opposite values;
     rd_nodes(n, node);
+    opposite_fill(n, (const cv(*)[RD_GRADED_TRIPLE])from, &values);
     for (int i = 0; i < n; i++) {
-        const double x = node[i] * (1 - 2 * part);
-        cv pair[2][ALL], *joined = to[i];
-        for (int side = 0; side < 2; side++) {
-            rd_nodes_weigh(n, node, (x + (side ? part : -part)) / (1 - part), weight);
-            interpolate(n, weight, (const cv(*)[RD_GRADED_TRIPLE])from, pair[side]);
-        }
-        join(pair[0], pair[1], joined);
+        rd_nodes_weigh(n, node, (node[i] * (1 - 2 * part) + part) / (1 - part), weight);
+        interpolate_both(&values, weight, right[i], left[n - 1 - i]);
     }
+    for (int i = 0; i < n; i++)
+        join(left[i], right[i], to[i]);
 }
 
 /* pieces by their number where they are no more than the nodes, else about these */

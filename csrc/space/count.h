@@ -290,12 +290,13 @@ static int halvings_of(const struct counting *c, size_t p)
 static void family_fill(struct counting *c, size_t p, size_t row, int odd, struct family *f)
 {
     const struct rd_space *rope = c->rope;
-    const struct rd_space_run run = {.halvings = halvings_of(c, p), .nodes = rope->nodes[p]};
+    const struct rd_space_run run = {
+        .equal = odd, .halvings = halvings_of(c, p), .nodes = rope->nodes[p]};
     struct rates rates;
     family_begin(&run, f->at, f);
     for (int i = 0; i < f->count; i++) {
         const double *series = rope->series + (row + (size_t)i) * rope->fields * RD_SPACE_ORDERS;
-        rates_fill(rope->fields, c->E, series, ldexp(rope->length[p] / odd, -f->left), &rates);
+        rates_fill(rope->fields, c->E, series, rope->length[p] * share_of(f), &rates);
         first(&rates, f->at + i);
     }
 }

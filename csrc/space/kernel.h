@@ -17,10 +17,10 @@ struct triple {
     NUM D[WIDE][WIDE], G[WIDE][WIDE], Q[WIDE][WIDE]; /* D = F - I */
 };
 
-/* entries of l^(k+1) E_k, E = sum E_k s^k, that are not all 0 */
+/* entries of l^(k+1) E_k, E = sum E_k s^k, that are not 0: most do not change along a piece */
 struct rates {
-    int entries, orders;
-    unsigned char row[ENTRIES], column[ENTRIES];
+    int orders, entries[RD_SPACE_ORDERS];
+    unsigned char row[RD_SPACE_ORDERS][ENTRIES], column[RD_SPACE_ORDERS][ENTRIES];
     NUM value[RD_SPACE_ORDERS][ENTRIES];
 };
 
@@ -108,9 +108,10 @@ RD_INLINE void column(const struct rates *E, int c, NUM *sum)
         for (int i = 0; i < STATE; i++)
             next[i] = number(0);
         for (int k = 0; k < E->orders && k < m; k++)
-            for (int e = 0; e < E->entries; e++)
-                next[E->row[e]] =
-                    add(next[E->row[e]], times(E->value[k][e], term[m - 1 - k][E->column[e]]));
+            for (int e = 0; e < E->entries[k]; e++) {
+                NUM *to = next + E->row[k][e];
+                *to = add(*to, times(E->value[k][e], term[m - 1 - k][E->column[k][e]]));
+            }
         for (int i = 0; i < STATE; i++) {
             next[i] = scaled(next[i], 1.0 / m);
             sum[i] = add(sum[i], next[i]);
@@ -248,12 +249,12 @@ RD_INLINE struct nearness join(const struct triple *one, const struct triple *tw
 RD_INLINE void rates_fill(size_t fields, const NUM *E, const double *series, double length,
                           struct rates *rates)
 {
-    rates->entries = 0;
     rates->orders = 1;
     for (size_t j = 0; j < fields; j++)
         for (int k = 1; k < RD_SPACE_ORDERS; k++)
             if (series[j * RD_SPACE_ORDERS + (size_t)k] != 0 && rates->orders <= k)
                 rates->orders = k + 1;
+    memset(rates->entries, 0, sizeof rates->entries);
     for (int i = 0; i < ENTRIES; i++) {
         const int row = i / STATE, col = i % STATE, r = row % WIDE, c = col % WIDE;
         /* Phi S / q -Phi^T */
@@ -271,28 +272,44 @@ RD_INLINE void rates_fill(size_t fields, const NUM *E, const double *series, dou
             for (size_t j = 0; j < fields; j++)
                 sum = add(sum, scaled(E[j * TRIPLE + at],
                                       power * series[j * RD_SPACE_ORDERS + (size_t)k]));
-            rates->value[k][rates->entries] = sum;
+            if (is_zero(sum))
+                continue;
+            const int at_order = rates->entries[k]++;
+            rates->value[k][at_order] = sum;
+            rates->row[k][at_order] = (unsigned char)row;
+            rates->column[k][at_order] = (unsigned char)col;
         }
-        rates->row[rates->entries] = (unsigned char)row;
-        rates->column[rates->entries++] = (unsigned char)col;
     }
 }
 
 /* The parts of a piece, doubled so far as `left` halvings say: all alike, each as it is, or about nodes. */
 struct family {
     int left, count;
-    int poly; /* nodes of the polynomial; 0: alike or as they are */
+    int equal; /* parts of the piece in the end */
+    int poly;  /* nodes of the polynomial; 0: alike or as they are */
     double node[RD_SPACE_NODES],
         weight[RD_SPACE_NODES]; /* barycentric (Berrut and Trefethen 2004) */
     struct triple *at;          /* (RD_SPACE_NODES) */
 };
 
+/* parts of the piece after so many halvings of the equal ones, at most as many as are counted */
+static inline int parts_of(int equal, int halvings)
+{
+    return halvings < 16 ? equal << halvings : 1 << 30;
+}
+
+/* the share of the piece that a part is */
+static inline double share_of(const struct family *f)
+{
+    return ldexp(1, -f->left) / f->equal;
+}
+
 static inline void family_begin(const struct rd_space_run *run, struct triple *at, struct family *f)
 {
     f->left = run->halvings;
     f->count = run->nodes;
-    f->poly =
-        run->nodes > 1 && run->halvings < 30 && run->nodes < 1 << run->halvings ? run->nodes : 0;
+    f->equal = run->equal;
+    f->poly = run->nodes > 1 && run->nodes < parts_of(run->equal, run->halvings) ? run->nodes : 0;
     f->at = at;
     for (int j = 0; j < f->poly; j++) {
         const double angle = (2 * j + 1) * 1.5707963267948966 / f->poly;
@@ -331,7 +348,8 @@ RD_INLINE int next_count(const struct family *f)
 {
     if (!f->poly)
         return f->count == 1 ? 1 : f->count / 2;
-    return 1 << (f->left - 1) <= f->poly ? 1 << (f->left - 1) : f->poly;
+    const int all = parts_of(f->equal, f->left - 1);
+    return all <= f->poly ? all : f->poly;
 }
 
 /* the two that make part i of the next doubling; returns whether they are the same */
@@ -342,8 +360,8 @@ RD_INLINE int pair(const struct family *f, int i, struct triple *one, struct tri
         *two = f->at[f->count == 1 ? 0 : 2 * i + 1];
         return f->count == 1;
     }
-    const double part = ldexp(1, -f->left);
-    const int apart = next_count(f) < f->poly || 1 << (f->left - 1) == f->poly;
+    const double part = share_of(f);
+    const int apart = parts_of(f->equal, f->left - 1) <= f->poly;
     const double x = apart ? (2 * i + 1) * 2 * part - 1 : f->node[i] * (1 - 2 * part);
     interpolate(f, (x - part) / (1 - part), one);
     interpolate(f, (x + part) / (1 - part), two);
@@ -353,17 +371,17 @@ RD_INLINE int pair(const struct family *f, int i, struct triple *one, struct tri
 /* parts of which the next doubling consists take the place of those there are */
 RD_INLINE void advance(struct family *f, int count, const struct triple *longer)
 {
-    const int apart = f->poly && (count < f->poly || 1 << (f->left - 1) == f->poly);
+    const int apart = parts_of(f->equal, f->left - 1) <= f->poly;
     memcpy(f->at, longer, (size_t)count * sizeof *longer);
     f->count = count;
     f->left--;
     f->poly = apart ? 0 : f->poly;
 }
 
-/* part k of 2^left */
+/* part k of equal 2^left */
 RD_INLINE void part_of(const struct family *f, int k, struct triple *t)
 {
-    const double part = ldexp(1, -f->left);
+    const double part = share_of(f);
     if (f->poly)
         interpolate(f, ((2 * k + 1) * part - 1) / (1 - part), t);
     else

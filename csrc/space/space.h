@@ -46,14 +46,14 @@ static inline size_t rd_space_rows(size_t width, int closed)
 enum { RD_SPACE_GENTLE = 2 };
 static const double rd_space_gentle[RD_SPACE_GENTLE] = {1e2, 1e4};
 
-/* How fields run along a piece: 2^-halvings of it is summed as a series about its left end. With
-   nodes = 1 all such parts are alike; with 2^halvings of them they are those parts, one after another;
-   else parts about the nodes of a polynomial (Chebyshev's of the first kind, decreasing), from which
+/* How fields run along a piece: 2^-halvings of each of its `equal` parts is summed as a series about its
+   left end. With nodes = 1 all such parts are alike; with equal 2^halvings of them they are those parts,
+   one after another; else parts about the nodes of a polynomial (Chebyshev's of the first kind, decreasing), from which
    the others are interpolated. */
 struct rd_space_run {
     size_t width;
     double length; /* [m] */
-    int halvings, nodes;
+    int equal, halvings, nodes;
     size_t fields;
     const double *series; /* (nodes, fields, RD_SPACE_ORDERS) of phi_j by powers of s - left end */
 };
@@ -79,7 +79,7 @@ struct rd_space {
 
 /* The parts of a piece at `lines` (lines, fields, 3, width, width) = Phi, S, q of each field, doubled
    `doublings` times or, earlier, while no joint's (I + G Q)^-1 is farther from I than `gentle`: *reached says
-   how often. triple (lines, parts, 3, width, width), parts = 2^(halvings - doublings) or 1 where they are
+   how often. triple (lines, parts, 3, width, width), parts = equal 2^(halvings - doublings) or 1 where they are
    alike: D = F - I, G, Q; of use only where *whole says that each was doubled *reached times, which are
    `doublings` where they are not alike. Takes what it needs from the
    workspace (with base NULL: counts it). RD_NO_MEMORY where that is too small. */

@@ -77,7 +77,7 @@ static RD_CLONES void family_fill(const struct rd_space_run *run, const cv *E, s
 {
     for (int i = 0; i < f->count; i++) {
         const double *series = run->series + (size_t)i * run->fields * RD_SPACE_ORDERS;
-        rates_fill(run->fields, E, series, ldexp(run->length, -f->left), rates);
+        rates_fill(run->fields, E, series, run->length * share_of(f), rates);
         first(rates, f->at + i);
     }
 }
@@ -134,7 +134,7 @@ enum rd_status RD_SPACE_(triples)(const struct rd_space_run *run, size_t lines,
         return RD_NO_MEMORY;
     *reached = doublings;
     *whole = 1;
-    const size_t parts = run->nodes == 1 ? 1 : (size_t)1 << (run->halvings - doublings);
+    const size_t parts = run->nodes == 1 ? 1 : (size_t)run->equal << (run->halvings - doublings);
     /* from the last line on, which is mostly that of the shortest waves: what it reaches all do */
     for (size_t batch = (lines + RD_LANES - 1) / RD_LANES; workspace->base && batch-- > 0;) {
         const size_t k = batch * RD_LANES;

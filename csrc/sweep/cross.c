@@ -266,6 +266,19 @@ static void cross_coupled(struct sweep *s, const struct rd_run *run, int way, si
     s->steps += s->coupled.steps * ((double)count * (double)count);
 }
 
+static const double *first_value(const struct rd_between *between, size_t e, int way)
+{
+    return between->values + 2 * between->nodes * between->first[2 * e + (size_t)way];
+}
+
+static void lines_fill(const struct sweep *s, size_t e, struct rd_between_lines *lines)
+{
+    rd_between_weigh(s->between, s->index, lines->weight);
+    for (size_t i = 0; i < s->chain->width; i++)
+        lines->z[i] = s->block.z[i];
+    lines->load = rd_between_load(s->chain, e, s->block.inertia, s->block.dashpot);
+}
+
 /* Across an element whose tension grows, by the pieces of its blocks, which are others the other way. */
 static void cross_graded(struct sweep *s, size_t e, int way, size_t node)
 {
@@ -278,13 +291,21 @@ static void cross_graded(struct sweep *s, size_t e, int way, size_t node)
         .tension = s->chain->tension[e],
         .pull = s->block.pull,
     };
-    const struct rd_sizes sizes = rd_sweep_sizes(s->extent);
+    const struct rd_between *between = s->between;
+    const struct rd_sizes sizes = between ? between->most : rd_sweep_sizes(s->extent);
     const size_t blocks = rd_blocks_of(s->chain, e, &sizes, way, block);
+    const double *at = between ? first_value(between, e, way) : NULL;
+    struct rd_between_lines lines;
+    if (between)
+        lines_fill(s, e, &lines);
     scatter(s);
     s->kernel->make_rate(s->chain, &s->block, e, &rate);
     s->tabled.levels = s->whole.count = s->coupled.count = 0;
     for (size_t k = 0; k < blocks; k++) {
-        rd_family_fill(&field, block + k, &family);
+        if (between)
+            at = rd_between_family(between, &lines, at, field.width, block + k, &family);
+        else
+            rd_family_fill(&field, block + k, &family);
         for (size_t i = 0; i < block[k].pieces; i++) {
             rd_family_piece(&family, i, s->triple);
             s->kernel->make_coefficients(s->triple, s->table);

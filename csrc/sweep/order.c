@@ -130,6 +130,8 @@ size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *r
         if (rd_span_is_plain(chain, (size_t)run->element))
             continue;
         if (rd_is_graded(chain, (size_t)run->element)) {
+            if (factors->between)
+                continue;
             used = alike_graded(chain, (size_t)run->element, extent, used);
             continue;
         }

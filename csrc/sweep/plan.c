@@ -138,6 +138,7 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factor
     const struct rd_ports *meet = swapped ? responses : drives;
     struct sweep plan = {
         .chain = chain,
+        .between = factors->between,
         .kernel = kernels[w - 1],
         .coefs = w * w + 2 * sym,
         .sym = sym,

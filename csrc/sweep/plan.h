@@ -39,6 +39,7 @@ struct sweep_compound {
 
 struct sweep {
     const struct rd_chain *chain;
+    const struct rd_between *between; /* or NULL */
     struct rd_runs runs;
     const struct sweep_kernel *kernel;
     size_t coefs;   /* complex lanes in the coefficients of an element */

@@ -3,7 +3,7 @@
 #define RD_SWEEP_SCALE_H
 
 #include "chain/runs.h"
-#include "graded/blocks.h"
+#include "graded/between.h"
 #include "sweep/kernel/kernel.h"
 
 /* The five complex factors of each frequency, real and imaginary part side by side. */
@@ -15,6 +15,7 @@ struct rd_factors {
     const double *inertia; /* (count, 2)  node mass times it: -omega^2 [1/s^2] */
     const double *dashpot; /* (count, 2)  node damping times it: i omega [1/s]; read where the chain
                                           has any */
+    const struct rd_between *between; /* what is known of elements whose tension grows, or NULL */
 };
 
 /* sizes of the factors of a frequency, for the length of pieces */

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .. import _core
 from ..base import check
-from ..base.array import Complex, Flags, Real
+from ..base.array import Complex, Flags, Index, Real
 from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import PLANE, Chain
@@ -43,6 +43,11 @@ class Question:
     def is_damped(self) -> Flags:
         """Whether a factor of something that this component has is complex, shape (f,)."""
         return damped_lines(self.walked[0], self.factor)
+
+    def at(self, lines: Index) -> Question:
+        """Return the same at some of its frequencies."""
+        factor = np.ascontiguousarray(self.factor[:, lines])
+        return replace(self, frequency=self.frequency[lines], factor=factor)
 
     @computed
     def cut(self) -> tuple[Chain, Real]:

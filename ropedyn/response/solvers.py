@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -18,10 +17,12 @@ from ..chain.compiled import EXACT, MOST_STEPS
 from ..chain.port import Point, Ports, is_force, is_held, local, moving, ports
 from ..chain.reaction import at_start, first_left_end, tellers
 from ..scene import damping
+from .bands import bands, between, is_many
 from .closed import closed_lines
-from .question import Bound, Question
+from .question import Bound, Question, angular
 from .rounding import EPS, bound_of
 
+NODES = 40  # Of a band: pieces end below 0.76 of their resonance, the error falls by 2.9 with each.
 LANES = 16  # Frequencies that the sweep solves side by side.
 SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 17
 """Steps times frequencies of one call of the core: a look for Ctrl-C some times a second."""
@@ -37,9 +38,7 @@ def _sweep(question: Question) -> tuple[Complex, Bound]:
     else:
         value, left = found.value[0], ~found.certain[0]
         if left.any():
-            factor = np.ascontiguousarray(question.factor[:, left])
-            rest = replace(question, frequency=question.frequency[left], factor=factor)
-            value[..., left] = _walk(rest)
+            value[..., left] = _walk(question.at(np.flatnonzero(left)))
     return value, partial(_bound, question, value)
 
 
@@ -51,7 +50,26 @@ def _walk(question: Question) -> Complex:
             f"frequency {float(question.frequency.max())!r} Hz is too high: the rope has {steps} "
             f"pieces shorter than its waves, at most {MOST_STEPS} are walked"
         )
-    return _unassembled(question, partial(_core.sweep, chain), steps, SWEEP_SLICE)[0]
+    # pieces of strings are sooner solved than interpolated: 5.3 and 7.0 ms of 1000 lines
+    if chain.rise is None or not chain.rise.any() or len(question.component) == 1:
+        return _unassembled(question, partial(_core.sweep, chain), steps, SWEEP_SLICE)[0]
+    shape = len(question.drives), len(question.responses), len(question.frequency)
+    value = np.empty(shape, dtype=np.complex128)
+    for lines in bands(question.frequency):
+        band = question.at(lines)
+        known = _between(band) if is_many(band.frequency) else ()
+        value[..., lines] = _unassembled(
+            band, partial(_core.sweep, chain), steps, SWEEP_SLICE, known=known
+        )[0]
+    return value
+
+
+def _between(question: Question) -> tuple[Complex, Real, Real]:
+    """Return nodes of increasing frequencies, what their pieces are, and their weights."""
+    nodes, weight = between(question.frequency, NODES)
+    omega = angular(nodes, question.decay)
+    factor = np.ascontiguousarray(damping.factors(question.model.scene.dampings, omega).T)
+    return factor, _core.sweep_between(question.walked[0], factor), weight
 
 
 def _bound(question: Question, value: Complex) -> Real:
@@ -92,18 +110,21 @@ def _ports(question: Question) -> tuple[Ports, Ports, bool]:
     return pushed, watched, reactions
 
 
-Core = Callable[[Complex, Ports, Ports], tuple[Complex, Real, int]]
+Core = Callable[..., tuple[Complex, Real, int]]
+"""What answers factors, drives and responses, beside what is known."""
+Known = tuple[Complex, Real, Real] | tuple[()]
 
 
 def _unassembled(
-    question: Question, core: Core, steps: int, size: int, *, lanes: int = LANES
+    question: Question, core: Core, steps: int, size: int, *, lanes: int = LANES, known: Known = ()
 ) -> tuple[Complex, Real]:
     """Ask the core for motion and internal forces, `size` steps times frequencies at a time."""
     factor = question.factor
     pushed, watched, reactions = _ports(question)
 
     def solve(part: slice) -> tuple[Complex, Real]:
-        value, error, solved = core(np.ascontiguousarray(factor[:, part]), pushed, watched)
+        beside = ((*known[:2], known[2][part]),) if known else ()
+        value, error, solved = core(np.ascontiguousarray(factor[:, part]), pushed, watched, *beside)
         if solved < value.shape[2]:
             raise question.resonance(part.start + solved)
         return value, error

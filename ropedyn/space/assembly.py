@@ -9,7 +9,7 @@ which exists where G is singular, and is symmetric.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -44,9 +44,9 @@ class Assembly:
     absent : ndarray of bool, shape (n, width)
     node : ndarray of int, shape (pieces + 1,)
         Where the nodes of the rope are.
-    inner : ndarray of int, optional
-        Where those of equal parts are, if the rope was divided for them.
     z : ndarray, shape (n, width)
+    missed : ndarray, shape (3, parts)
+        What D, G and Q may be off beside rounding, of their largest entries.
     doubt : ndarray, shape (n, parts + 1)
         What rounding may have done to N, where wires are carried.
     feet : tuple of Foot
@@ -63,10 +63,10 @@ class Assembly:
     absent: Flags
     node: Index
     z: Real
+    missed: Real
     doubt: Real
     feet: tuple[Foot, ...] = ()
     closed: bool = False
-    inner: Index | None = None
 
     @property
     def width(self) -> int:
@@ -85,14 +85,14 @@ class Assembly:
 
     @computed
     def largest(self) -> tuple[Real, Real, Real, Real]:
-        """Entries of D, G, Q and N, the largest of each part; N with its doubt in roundings."""
+        """The largest entries of D, G, Q and N of each part, with all they are off in roundings."""
+        rounding = ROUNDINGS * np.finfo(float).eps
         D, G, Q, N = (np.abs(one).max((2, 3)) for one in (self.D, self.G, self.Q, self.N))
-        return D, G, Q, N + self.doubt / (ROUNDINGS * np.finfo(float).eps)
+        off = 1 + self.missed / rounding
+        return D * off[0], G * off[1], Q * off[2], N + self.doubt / rounding
 
     def shown(self, equal: int) -> Index:
         """Return the nodes at the ends of so many equal parts of each piece."""
-        if self.inner is not None:
-            return self.inner
         within = np.diff(self.node)[:, None] // equal * np.arange(equal)
         return np.append((self.node[:-1, None] + within).ravel(), self.node[-1])
 
@@ -150,34 +150,47 @@ class Factored:
         return found.swapaxes(1, 2), forms[:, 0], forms[:, 1]
 
 
-def assemble(
-    rope: SpaceRope, which: Index, factors: Factors, z: Real, *, equal: int = 1
-) -> Assembly:
-    """Return the parts of a component at each line: so many equal ones of each piece, or more.
+class SpaceParts(NamedTuple):
+    """The parts of a component at each line, before anything stands between them."""
 
-    which : (n,) or (1,) where it is the same at all n lines.
-    """
-    if equal > 1 and rope.bend.shape[1] > 1:
-        divided = rope.divided(equal)
-        whole = assemble(divided, which, factors, z)
-        return replace(whole, node=whole.node[::equal], inner=whole.node)
+    matrices: Complex  # (3, n, parts, width, width) D, G and Q
+    node: Index  # (pieces + 1,) where pieces begin among them
+    missed: Real  # (3, parts) what they may be off beside rounding, of the largest entries
+
+
+def parts_at(
+    rope: SpaceRope, which: Index, factors: Factors, z: Real, equal: int = 1
+) -> SpaceParts:
+    """Return so many equal parts of each piece, or more, all below their resonances."""
     rates = scaled_rates(rope.rates(which, factors), z)
     size = size_of(rates).max(axis=(0, 2))
-    width, blocks = z.shape[1], rope.blocks
     triples, counts = [], []
-    for p, length in enumerate(rope.length / equal):
+    for p, length in enumerate(rope.length.tolist()):
         one = np.ascontiguousarray(coefficients(rates[:, p]))
-        halved = int(halvings(max(size[p] * length, rope.least_radians[p])))
-        triple, alike = parts_of(one, float(length), halved)
+        halved = int(halvings(max(size[p] * length, rope.least_radians[p]) / equal))
+        triple, alike = parts_of(one, length, equal, halved)
         triples.append(triple)
-        counts.append(equal * alike * triple.shape[1])
+        counts.append(alike * triple.shape[1])
         if sum(counts) > MOST_PARTS:
             raise SolveError("the waves are too short for the rope: more than 100000 parts")
     node = np.concatenate([[0], np.cumsum(counts)])
-    D, G, Q = matrices = np.empty((3, len(rates), node[-1], width, width), np.complex128)
+    matrices = np.empty((3, len(rates), node[-1], *rates.shape[-2:]), np.complex128)
     for p, (first, triple) in enumerate(zip(node[:-1], triples)):
         # parts that are alike are one, or all that lie one after another are there
         matrices[:, :, first : node[p + 1]] = np.moveaxis(triple, 2, 0)
+    return SpaceParts(matrices, node, np.zeros((3, node[-1])))
+
+
+def assemble(
+    rope: SpaceRope, which: Index, factors: Factors, z: Real, parts: SpaceParts | None = None
+) -> Assembly:
+    """Return a component at each line, of parts that are known or of as few as there may be.
+
+    which : (n,) or (1,) where it is the same at all n lines.
+    """
+    parts = parts or parts_at(rope, which, factors, z)
+    (D, G, Q), node, missed = parts
+    width, blocks = z.shape[1], rope.blocks
     for p in rope.kinks:
         # F R and R^T Q R of what begins with a kink
         first = node[p]
@@ -185,7 +198,7 @@ def assemble(
         back, own = turn.swapaxes(1, 2), Q[:, first]
         D[:, first] = turn + D[:, first] + D[:, first] @ turn
         Q[:, first] = own + back @ own + own @ turn + back @ own @ turn
-    N = np.zeros((len(rates), node[-1] + 1, width, width), dtype=np.complex128)
+    N = np.zeros((len(z), node[-1] + 1, width, width), dtype=np.complex128)
     N[:, node] = rope.nodes(which, factors) * (z[:, None, :, None] * z[:, None, None, :])
     doubt = np.zeros(N.shape[:2])
     feet = tuple(foot_of(wire, factors) for wire in rope.carried)
@@ -196,7 +209,7 @@ def assemble(
     absent = np.broadcast_to(blocks.absent[which], z.shape)
     held = np.tile(absent[:, None], (1, node[-1] + 1, 1))
     held[:, node] |= blocks.held[which]
-    return Assembly(D, G, Q, N, held, absent, node, z, doubt, feet, rope.closed)
+    return Assembly(D, G, Q, N, held, absent, node, z, missed, doubt, feet, rope.closed)
 
 
 class Foot(NamedTuple):
@@ -284,15 +297,18 @@ def bound(system: Assembly, one: LoadedFields, other: LoadedFields) -> Real:
     return limit
 
 
-def parts_of(rates: Complex, length: float, halved: int) -> tuple[Complex, int]:
+def parts_of(rates: Complex, length: float, equal: int, halved: int) -> tuple[Complex, int]:
     """Return triples (n, parts, 3, width, width) of a piece, and of how many each is one.
 
-    All are below their own resonances.
+    They are so many equal ones, or halves and quarters of these where those are not below their own
+    resonances.
     """
-    series = series_of(length, halved, rates.shape[1])
+    series = series_of(length, halved, rates.shape[1], equal)
     most = halved
     while True:
-        triple, reached, whole = _core.space_triples(rates, series, length, halved, most, GENTLE)
+        triple, reached, whole = _core.space_triples(
+            rates, series, length, equal, halved, most, GENTLE
+        )
         if whole:
-            return triple, 1 << (halved - reached) if len(series) == 1 else 1
+            return triple, equal << (halved - reached) if len(series) == 1 else 1
         most = int(reached)

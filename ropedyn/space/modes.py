@@ -22,7 +22,7 @@ from ..eigen.spectrum import error_in_hertz
 from ..eigen.vectors import largest, within
 from ..scene import damping
 from ..scene.scene import Scene
-from .assembly import MOST_PARTS, Assembly, assemble
+from .assembly import MOST_PARTS, Assembly, assemble, parts_at
 from .compile import axis_of, finer_rope, method_of
 from .rope import SIX, Factors, SpaceRope, unforced
 from .sensitivity import SpaceSensitivity
@@ -158,10 +158,14 @@ class SpaceShapes:
             which = self.component[[one[0] for one in clusters]]
             z = self.rope.scale(which, means)
             factors = unforced(means + beside, STEP)
-            system = assemble(self.rope, which, factors, z, equal=self.points)
+            system = self._assembled(self.rope, (which, factors, z))
             own = self._found(system, [len(one) for one in clusters])
             found.append(ShapeBatch(clusters, system, own, (which, unforced(means), z)))
         return found
+
+    def _assembled(self, rope: SpaceRope, lines: Any) -> Assembly:
+        which, factors, z = lines
+        return assemble(rope, which, factors, z, parts_at(rope, which, factors, z, self.points))
 
     @computed
     def solved(self) -> tuple[Real, dict[str, Real]]:
@@ -259,7 +263,7 @@ class SpaceShapes:
 
     def products(self, varied: SpaceRope, lines: Any, own: Real) -> Real:
         """Return the products, row by row, that these are sums of."""
-        system = assemble(varied, *lines, equal=self.points)
+        system = self._assembled(varied, lines)
         return np.asarray(own * system.apply(own).imag / STEP)
 
     @property

@@ -12,8 +12,9 @@ from .. import _core
 from ..axis.axis import Axis
 from ..axis.piece import CatenaryPiece, Piece
 from ..base.array import Real
+from ..base.chebyshev import nodes_of
 from .rope import SAMPLED, SIGN, SIX, SpaceRope
-from .samples import SAMPLES, sample_places, tail
+from .samples import SAMPLES, tail
 
 FOLLOWED = 1e-11
 """The last two coefficients of what changes along a piece, relative, which a polynomial is cut at.
@@ -204,7 +205,7 @@ def _blocks(
     left = list(itertools.pairwise([0.0, *inside, piece.length]))[::-1]
     while left:
         begin, end = left.pop()
-        s = begin + (end - begin) * sample_places(SAMPLES)
+        s = begin + (end - begin) * nodes_of(SAMPLES)
         given = _along(axis, k, s, section, rest)
         changing = [values for values in given.values() if (values != values[0]).any()]
         missed = max((tail(values) for values in changing), default=0.0)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,12 +18,14 @@ from ..base.errors import SceneError
 from ..base.unit import QUANTITIES, WIRE
 from ..chain.place import moved_end
 from ..chain.port import Point, is_force, moving
+from ..response.bands import bands, is_many
 from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ..response.question import OnResonance
 from ..scene import damping
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.scene import Scene
 from .assembly import ROUNDINGS, Assembly, LoadedFields, assemble, bound
+from .between import MISSED, Between
 from .compile import finer_rope, method_of
 from .rope import SIX, Factors, SpaceRope
 
@@ -157,6 +160,10 @@ class AskedPart(NamedTuple):
     node: list[Index]  # of drives and of responses
     point: list[list[Point]]
 
+    def at(self, lines: Index) -> tuple[Index, ...]:
+        """Return where its answers at some lines are among all."""
+        return *(one[..., None] for one in self.pairs), lines
+
 
 @dataclass(frozen=True, eq=False)
 class Request:
@@ -167,6 +174,7 @@ class Request:
     frequency: Real
     node: tuple[Index, Index]  # of drives and of responses
     point: tuple[tuple[Point, ...], tuple[Point, ...]]
+    factors_at: Callable[[Real], Factors] | None  # other frequencies; None: these are on no line
 
     @classmethod
     def of(
@@ -180,13 +188,24 @@ class Request:
         decay: float | Real = 0.0,
     ) -> Request:
         """Cut the rope at the points; motion is e^(s t), s = 2 pi i frequency + decay."""
-        omega = 2 * math.pi * frequency - 1j * decay
-        by = damping.factors(scene.dampings, omega).T
-        factors = Factors(*by, *np.ones((1, len(omega)), dtype=np.complex128))
+
+        def factors_at(frequency: Real, decay: Any) -> Factors:
+            omega = 2 * math.pi * frequency - 1j * decay
+            by = damping.factors(scene.dampings, omega).T
+            return Factors(*by, *np.ones((1, len(omega)), dtype=np.complex128))
+
         points, both = (tuple(drives), tuple(responses)), len(drives)
         places = [_place(rope, point) for point in (*drives, *responses)]
         cut, node = rope.cut(np.array(places), check.NEAR * scene.rope.length)
-        return cls(cut, factors, frequency, (node[:both], node[both:]), points)
+        same = np.ptp(decay) == 0
+        return cls(
+            cut,
+            factors_at(frequency, decay),
+            frequency,
+            (node[:both], node[both:]),
+            points,
+            partial(factors_at, decay=np.ravel(decay)[0]) if same else None,
+        )
 
     def receptance(self) -> Complex:
         """Return motion and internal force per unit force or motion, (drives, responses, f)."""
@@ -196,7 +215,7 @@ class Request:
             seen = np.einsum("lrc,lrcd->drl", ports.motion, one.u[:, ports.node])
             if ports.force.any():
                 seen += np.einsum("lrc,lrcd->drl", ports.force, one.f[:, ports.part])
-            value[(*side.pairs, lines)] = seen
+            value[side.at(lines)] = seen
         return value
 
     def rounding(self) -> Real:
@@ -210,7 +229,7 @@ class Request:
             with np.errstate(all="ignore"):
                 moved = bound(system, one, other).transpose(1, 2, 0) + seen
             # a response that pushes what nothing holds, where no drive does, has no bound
-            limit[(*side.pairs, lines)] = np.where(np.isfinite(moved), moved, np.inf)
+            limit[side.at(lines)] = np.where(np.isfinite(moved), moved, np.inf)
         return limit
 
     @property
@@ -231,23 +250,46 @@ class Request:
                 found.append(AskedPart(np.array([k]), own, np.ix_(*at), node, point))
         return found
 
-    def _systems(self) -> Iterator[tuple[AskedPart, slice, Assembly]]:
+    def _systems(self) -> Iterator[tuple[AskedPart, Index, Assembly]]:
         for side in self.components:
-            first, count = 0, FIRST
-            while first < len(self.frequency):
-                lines = slice(first, first + count)
-                system = self.assembled(side, lines)
-                yield side, lines, system
-                first += count
-                count = max(1, min(AT_ONCE, TOGETHER // system.parts))
+            for lines, between in self._bands(side.which):
+                first, count = 0, FIRST
+                while first < len(lines):
+                    at_once = slice(first, first + count)
+                    system = self.assembled(side, lines[at_once], between, at_once)
+                    yield side, lines[at_once], system
+                    first += count
+                    count = max(1, min(AT_ONCE, TOGETHER // system.parts))
 
-    def assembled(self, side: AskedPart, lines: slice) -> Assembly:
-        """Return a component at some of the lines."""
+    def assembled(
+        self,
+        side: AskedPart,
+        lines: Index | slice,
+        between: Between | None = None,
+        at_once: slice = slice(None),
+    ) -> Assembly:
+        """Return a component at some of the lines, which lie so in a band."""
         factors = Factors(*(one[lines] for one in self.factors))
         z = self.rope.scale(side.which, np.abs(factors.inertia))
-        return assemble(self.rope, side.which, factors, z)
+        parts = between.at(at_once, z) if between else None
+        return assemble(self.rope, side.which, factors, z, parts)
 
-    def _solved(self, system: Assembly, side: AskedPart, lines: slice, end: int) -> LoadedFields:
+    def _bands(self, which: Index) -> Iterator[tuple[Index, Between | None]]:
+        """Yield lines, and between which others they lie where they are many."""
+        left = list(bands(self.frequency))
+        while left:
+            lines = left.pop()
+            frequency = self.frequency[lines]
+            if self.factors_at is None or not is_many(frequency):
+                yield lines, None
+                continue
+            between = Between.of(self.rope, which, frequency, self.factors_at)
+            if between.missed.max() <= MISSED:
+                yield lines, between
+            else:
+                left += np.array_split(lines, 2)
+
+    def _solved(self, system: Assembly, side: AskedPart, lines: Index, end: int) -> LoadedFields:
         """Return motion and force of unit loads on drives (0) or responses (1)."""
         ports, n = self._ports(system, side, end), len(system.D)
         columns = np.arange(len(ports.node))

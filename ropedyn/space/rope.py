@@ -178,12 +178,6 @@ class SpaceRope:
         node = np.abs(self.x - np.asarray(places)[..., None]).argmin(axis=-1)
         return node % len(self.length) if self.closed else node
 
-    def divided(self, equal: int) -> SpaceRope:
-        """Return it with so many equal pieces in place of each."""
-        inside = (np.arange(equal) / equal)[None, :] * self.length[:, None]
-        x = (self.x[:-1, None] + inside).ravel()
-        return self.cut(x[1:], 0.1 * float(self.length.min()) / equal)[0]
-
     def rates(self, which: Index, factors: Factors) -> Complex:
         """Return Phi, S and q of components at lines, (n, pieces, samples, 3, width, width)."""
         section, tension, _, inertia, drag = (of_lines(one)[..., None] for one in factors[:5])

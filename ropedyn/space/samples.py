@@ -9,6 +9,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..base.array import Real
+from ..base.chebyshev import fitted, nodes_of, weights
 
 SAMPLES = 14
 """Of a piece along which something changes."""
@@ -22,38 +23,19 @@ NOTHING = 1e-19
 """Terms of a part's series that are less, relative, are none."""
 
 
-def sample_places(samples: int) -> Real:
-    """Return where they are, from 0 to 1: at Chebyshev's nodes, or the middle of one."""
-    angle = (2 * np.arange(samples) + 1) * np.pi / (2 * samples)
-    return np.array((1 - np.cos(angle)) / 2, dtype=np.float64)
-
-
-@lru_cache(64)
-def _fitted(samples: int) -> Real:
-    """Return Chebyshev coefficients, in x from -1 to 1, of what is 1 at one sample, in columns."""
-    at_samples = chebyshev.chebvander(2 * sample_places(samples) - 1, samples - 1)
-    return np.array(np.linalg.inv(at_samples), dtype=np.float64)
-
-
-def weights(samples: int, places: Real) -> Real:
-    """Return what samples count for at places from 0 to 1, shape places + (samples,)."""
-    found: Real = chebyshev.chebvander(2 * places - 1, samples - 1) @ _fitted(samples)
-    return found
-
-
 def resampled(values: Real, begin: Real, end: Real) -> Real:
     """Return the samples (pieces, samples, ..) of a part of each, begin and end from 0 to 1."""
     samples = values.shape[1]
     if samples == 1:
         return values
-    places = begin[:, None] + (end - begin)[:, None] * sample_places(samples)
+    places = begin[:, None] + (end - begin)[:, None] * nodes_of(samples)
     found: Real = np.einsum("pts,ps...->pt...", weights(samples, places), values)
     return found
 
 
 def tail(values: Real) -> float:
     """Return how large the last two coefficients are beside the largest value, of axis 0."""
-    coefficients = np.tensordot(_fitted(len(values)), values, axes=1)
+    coefficients = np.tensordot(fitted(len(values)), values, axes=1)
     size = np.abs(values).max(axis=0)
     least = np.abs(coefficients[-2:]).max(axis=0)
     return float(np.divide(least, size, where=size > 0, out=np.zeros_like(size)).max())
@@ -67,31 +49,32 @@ def coefficients(values: Any) -> Any:
     samples = values.shape[-4]
     if samples == 1:
         return values
-    found = np.einsum("kj,...jabc->...kabc", _fitted(samples), values)
+    found = np.einsum("kj,...jabc->...kabc", fitted(samples), values)
     parts = [found.real, found.imag] if np.iscomplexobj(found) else [found]
     for part, given in zip(parts, [values.real, values.imag]):
         part[np.abs(part) <= ROUNDED * np.abs(given).max(axis=-4, keepdims=True)] = 0.0
     return found
 
 
-def series_of(length: float, halved: int, samples: int) -> Real:
+def series_of(length: float, halved: int, samples: int, equal: int = 1) -> Real:
     """Return the series of the parts of a piece that begin its doubling, as the core takes them.
 
-    Shape (nodes, samples, ORDERS): of Chebyshev's polynomials, by powers of s from the left end.
+    They are the halved ones of so many equal parts, (nodes, samples, ORDERS): of Chebyshev's
+    polynomials, by powers of s from the left end.
     """
     scale = float(length) ** -np.arange(ORDERS)
-    found: Real = _unit_series(int(halved), samples) * scale
+    found: Real = _unit_series(int(halved), samples, equal) * scale
     return found
 
 
 @lru_cache(64)
-def _unit_series(halved: int, samples: int) -> Real:
+def _unit_series(halved: int, samples: int, equal: int) -> Real:
     if samples == 1:
         return np.eye(1, ORDERS)[None]
-    part = 0.5**halved
-    few = halved < 30 and 2**halved <= NODES
+    part = 0.5**halved / equal
+    few = halved < 30 and equal * 2**halved <= NODES
     node = np.cos((2 * np.arange(NODES) + 1) * np.pi / (2 * NODES))
-    begin = part * np.arange(2**halved) if few else (1 - part) * (1 + node) / 2
+    begin = part * np.arange(equal * 2**halved) if few else (1 - part) * (1 + node) / 2
     series = np.zeros((len(begin), samples, ORDERS))
     own: Any = np.eye(samples)
     factor = 1.0

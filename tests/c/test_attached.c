@@ -303,7 +303,7 @@ static void test_a_foot_stands_still_where_its_resonator_is_tuned(void)
     const double dashpot[] = {0, sqrt(own), 0, sqrt(2 * own)};
     const int32_t node[] = {NODE};
     const double at[] = {1, 0};
-    const struct rd_factors factors = {2, one, one, one, inertia, dashpot};
+    const struct rd_factors factors = {2, one, one, one, inertia, dashpot, NULL};
     const struct rd_ports ports = {1, node, at, NULL};
     struct rd_workspace space = {0};
     double value[4], error[2];

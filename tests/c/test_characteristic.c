@@ -27,7 +27,7 @@ static enum rd_status ask_less(const struct rd_chain *chain, const double comple
         memcpy(dashpot + 2 * i, s + i, sizeof *s);
     }
     const double square[2] = {reach * reach, 0}, line[2] = {reach, 0};
-    const struct rd_factors bound = {1, one, one, one, square, line};
+    const struct rd_factors bound = {1, one, one, one, square, line, NULL};
     struct rd_workspace space = {0};
     CHECK(rd_characteristic_take(chain, &bound, &space) == NULL);
     space = exact_workspace(space.used - less);
@@ -35,7 +35,8 @@ static enum rd_status ask_less(const struct rd_chain *chain, const double comple
     enum rd_status status = of ? RD_OK : RD_NO_MEMORY;
     for (size_t i = 0; i < count && status == RD_OK; i += RD_LANES) {
         const size_t some = count - i < RD_LANES ? count - i : RD_LANES;
-        const struct rd_factors factors = {some, one, one, one, inertia + 2 * i, dashpot + 2 * i};
+        const struct rd_factors factors = {some, one, one, one, inertia + 2 * i, dashpot + 2 * i,
+                                           NULL};
         status = rd_characteristic_at(of, &factors, (double *)(answer->value + i),
                                       answer->magnitude + i);
         answer->steps = rd_characteristic_steps(of);

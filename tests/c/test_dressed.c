@@ -198,8 +198,13 @@ static void by_sweep(const struct rope *rope, const struct rd_ports *ports, comp
             part[k][2 * i + 1] = cimag(factor[k]);
         }
     }
-    const struct rd_factors factors = {POINTS,           part[RD_ELASTIC], part[RD_STRING],
-                                       part[RD_SPRINGS], part[RD_MASS],    part[RD_DASHPOTS]};
+    const struct rd_factors factors = {POINTS,
+                                       part[RD_ELASTIC],
+                                       part[RD_STRING],
+                                       part[RD_SPRINGS],
+                                       part[RD_MASS],
+                                       part[RD_DASHPOTS],
+                                       NULL};
     struct rd_workspace space = {0};
     size_t failed = 0;
     rd_frf_sweep(&rope->chain, &factors, ports, ports, &space, (double *)value, error, &failed);

@@ -1,5 +1,5 @@
 /* Elements whose tension grows along them: their blocks, and the triples of those. */
-#include "graded/family.h"
+#include "graded/between.h"
 #include "graded/polynomial.h"
 
 #include "check.h"
@@ -146,6 +146,65 @@ static void polynomial_is_exact_to_its_degree(void)
     CHECK_REL(sum, pow(0.3, 6), 1e-12, "a sum of numbers 1000 times as large");
 }
 
+/* halfway between nodes, whose weights are those of a polynomial of lambda, a family is that of its own
+   lambda; of a motion of z alone to all digits where that is 1e-4 of the largest too */
+static void families_lie_between_those_of_nodes(void)
+{
+    enum { N = 24 };
+    static const double at[] = {2e-6, 3e-3, 0.0199};
+    for (int way = 0; way < 2; way++) {
+        struct one one;
+        double node[N], weight[RD_LANES * N], ones[2 * N], inertia[2 * N], none[2 * N] = {0};
+        size_t first[2], index[RD_LANES];
+        static double values[2 * 2 * RD_NODES_MOST * RD_GRADED_TRIPLE * 2 * N];
+        one_fill(&one, 1e-1, 4, 9);
+        rd_nodes(N, node);
+        for (int n = 0; n < N; n++) {
+            ones[2 * n] = 1;
+            ones[2 * n + 1] = inertia[2 * n + 1] = 0;
+            inertia[2 * n] = -0.01 * (1 + node[n]);
+        }
+        for (size_t lane = 0; lane < RD_LANES; lane++) {
+            index[lane] = lane;
+            rd_nodes_weigh(N, node, at[lane % 3] / 0.01 - 1, weight + lane * N);
+        }
+        struct rd_between between = {
+            .most = {1, 1, 0.02, 0}, .real = true, .nodes = N, .first = first, .weight = weight};
+        const struct rd_between_factors factors = {ones, ones, inertia, none};
+        const size_t places = rd_between_layout(&one.chain, &between.most, first);
+        CHECK(places > 0 && 2 * N * places <= sizeof values / sizeof *values);
+        rd_between_fill(&one.chain, &between, &factors, values);
+        between.values = values;
+        struct rd_block block[RD_BLOCKS_MOST];
+        struct rate_matrix rate;
+        struct rd_family known, own;
+        struct rd_between_lines lines = {.z = {l_fill(2), l_fill(0.5)}};
+        cv lambda = c_zero();
+        for (size_t lane = 0; lane < RD_LANES; lane++)
+            lambda.re[lane] = -at[lane % 3];
+        rd_between_weigh(&between, index, lines.weight);
+        lines.load = rd_between_load(&one.chain, 0, lambda, c_zero());
+        rd_rate_fill(&one.chain, 0, c_real(1), c_real(1), lambda, c_zero(), &rate);
+        const struct rd_field field = {
+            .width = 2, .rate = &rate, .tension = one.tension, .pull = c_real(1)};
+        const size_t blocks = rd_blocks_of(&one.chain, 0, &between.most, way, block);
+        const double *from = values + 2 * N * first[way];
+        for (size_t k = 0; k < blocks; k++) {
+            cv a[RD_GRADED_TRIPLE], b[RD_GRADED_TRIPLE];
+            from = rd_between_family(&between, &lines, from, 2, block + k, &known);
+            rd_family_fill(&field, block + k, &own);
+            rd_family_piece(&known, 0, a);
+            rd_family_piece(&own, 0, b);
+            /* D_zz, D_zb, D_bz, D_bb, G_zz, G_zb, G_bb, Q_zz, Q_zb, Q_bb of u = z u^, f = f^/z */
+            static const double scale[] = {1, 0.25, 4, 1, 0.25, 1, 4, 4, 1, 0.25};
+            for (int lane = 0; lane < 3; lane++)
+                for (int i = 0; i < RD_GRADED_TRIPLE; i++)
+                    CHECK_REL(a[i].re[lane], scale[i] * b[i].re[lane], 64 * EPS,
+                              "roundings of nodes: 1.5e-15 is measured");
+        }
+    }
+}
+
 /* a string of more blocks than there is room for has none */
 static void blocks_end(void)
 {
@@ -165,6 +224,7 @@ int main(void)
     element_is_its_halves_joined();
     imaginary_parts_are_slopes();
     polynomial_is_exact_to_its_degree();
+    families_lie_between_those_of_nodes();
     blocks_end();
     return check_report("test_graded");
 }

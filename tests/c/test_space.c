@@ -41,7 +41,7 @@ static void test_triple_of_a_beam_at_rest(void)
         at[2 * FULL] = load[i % FULL];
     }
     for (int doublings = 0; doublings <= 6; doublings += 3) {
-        const struct rd_space_run run = {SIX, ldexp(l, 6 - doublings), 6, 1, 1, series};
+        const struct rd_space_run run = {SIX, ldexp(l, 6 - doublings), 1, 6, 1, 1, series};
         int reached = -1, whole = 0;
         free(workspace.base);
         workspace = (struct rd_workspace){0};
@@ -199,8 +199,8 @@ static void test_parts_of_what_only_seems_to_change(void)
         at[RD_SPACE_ORDERS] = -2;
         at[RD_SPACE_ORDERS + 1] = -0.5;
     }
-    const struct rd_space_run plain = {SIX, 1, HALVINGS, 1, 1, flat};
-    const struct rd_space_run about = {SIX, 1, HALVINGS, NODES, FIELDS, series};
+    const struct rd_space_run plain = {SIX, 1, 1, HALVINGS, 1, 1, flat};
+    const struct rd_space_run about = {SIX, 1, 1, HALVINGS, NODES, FIELDS, series};
     rd_space_triples(&about, 0, rates, 3, 0.9, many, &reached, &whole, &workspace);
     workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
     CHECK_INT(rd_space_triples(&plain, 1, rates, 3, 0.9, one, &reached, &whole, &workspace), RD_OK);
@@ -221,6 +221,41 @@ static void test_parts_of_what_only_seems_to_change(void)
     workspace.used = 0;
     CHECK_INT(rd_space_triples(&about, 1, rates, 3, 0.9, many, &reached, &whole, &workspace),
               RD_NO_MEMORY);
+    free(workspace.base);
+}
+
+/* three equal parts of a piece are each its third, which a uniform beam is doubled to */
+static void test_equal_parts_are_those_of_the_whole(void)
+{
+    enum { NODES = 14, HALVINGS = 4, EQUAL = 3 };
+    double _Complex rates[TRIPLE], one[TRIPLE], many[EQUAL * TRIPLE];
+    static double flat[NODES * RD_SPACE_ORDERS];
+    double phi[FULL], soft[FULL], load[FULL], inertia[FULL];
+    struct rd_workspace workspace = {0};
+    int reached, whole;
+    beam(phi, soft, load, inertia);
+    for (int i = 0; i < FULL; i++) {
+        rates[i] = phi[i];
+        rates[FULL + i] = soft[i];
+        rates[2 * FULL + i] = -3 * inertia[i];
+    }
+    for (int node = 0; node < NODES; node++)
+        flat[node * RD_SPACE_ORDERS] = 1;
+    const struct rd_space_run third = {SIX, 0.25, 1, HALVINGS, 1, 1, flat};
+    const struct rd_space_run all = {SIX, 0.75, EQUAL, HALVINGS, NODES, 1, flat};
+    rd_space_triples(&all, 0, rates, HALVINGS, 0.9, many, &reached, &whole, &workspace);
+    workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
+    CHECK_INT(rd_space_triples(&all, 1, rates, HALVINGS, 0.9, many, &reached, &whole, &workspace),
+              RD_OK);
+    CHECK(reached == HALVINGS && whole);
+    workspace.used = 0;
+    CHECK_INT(rd_space_triples(&third, 1, rates, HALVINGS, 0.9, one, &reached, &whole, &workspace),
+              RD_OK);
+    CHECK(reached == HALVINGS && whole);
+    for (int part = 0; part < EQUAL; part++)
+        for (int i = 0; i < TRIPLE; i++)
+            CHECK_ABS(creal(many[part * TRIPLE + i]), creal(one[i]),
+                      64 * EPS * (1e-3 + fabs(creal(one[i]))), "roundings of nodes");
     free(workspace.base);
 }
 
@@ -371,6 +406,7 @@ int main(void)
     test_counts_of_rods_and_beams();
     test_a_held_node_within_is_counted();
     test_parts_of_what_only_seems_to_change();
+    test_equal_parts_are_those_of_the_whole();
     test_bands_of_numbers_of_both_kinds();
     test_iteration_finds_what_gives_way_most();
     test_a_closed_band_is_two_springs_side_by_side();

@@ -166,6 +166,8 @@ FIXED = np.zeros((2, 18), dtype=np.uint8)
 SOLVED = np.ones((2, 3, 18))
 FACTORED = _core.space_factor(*BLOCKS, FIXED, False)[:2]
 
+NODES = np.tile(FACTOR, (8, 1)).T.copy()
+
 # every entry point that takes a chain
 ENTRIES = {
     "triples": _core.triples,
@@ -178,6 +180,7 @@ ENTRIES = {
     "count": lambda chain: _core.count(chain, np.array([1e4, 1e6])),
     "certify": lambda chain: _core.certify(chain, 3, np.inf, True),
     "sweep": lambda chain: _core.sweep(chain, FACTOR.T.copy(), PORT, PORT),
+    "sweep_between": lambda chain: _core.sweep_between(chain, NODES),
     "steps": lambda chain: _core.steps(chain, FACTOR.T.copy()),
     "scales": lambda chain: _core.scales(chain, FACTOR.T.copy()),
     "damped": lambda chain: _core.damped(
@@ -201,6 +204,7 @@ SPANS = {
     "count": ENTRIES["count"],
     "certify": ENTRIES["certify"],
     "sweep": ENTRIES["sweep"],
+    "sweep_between": ENTRIES["sweep_between"],
     "steps": ENTRIES["steps"],
     "scales": ENTRIES["scales"],
     "damped": ENTRIES["damped"],
@@ -239,7 +243,7 @@ OTHERS = {
         np.array([0.6]),
     ),
     "divide": lambda _: _core.divide(*DIVIDED),
-    "space_triples": lambda _: _core.space_triples(RATES, SERIES, 2.0, 6, 6, 1e4),
+    "space_triples": lambda _: _core.space_triples(RATES, SERIES, 2.0, 1, 6, 6, 1e4),
     "space_factor": lambda _: _core.space_factor(*BLOCKS, FIXED, False),
     "space_solve": lambda _: _core.space_solve(*FACTORED, SOLVED),
     "space_respond": lambda _: _core.space_respond(*BLOCKS, FIXED, False, SOLVED),
@@ -582,17 +586,38 @@ REFUSED = {
     ),
     "span of the last node": (lambda: _core.local(CHAIN, 8, 0.0, 0.0), ValueError, "got 8"),
     "rates of another shape": (
-        lambda: _core.space_triples(RATES[:, :, :2], SERIES, 2.0, 6, 6, 1e4),
+        lambda: _core.space_triples(RATES[:, :, :2], SERIES, 2.0, 1, 6, 6, 1e4),
         ValueError,
         "rates must have 3 entries along axis 2, got 2",
     ),
     "halvings beyond": (
-        lambda: _core.space_triples(RATES, SERIES, 2.0, 61, 6, 1e4),
+        lambda: _core.space_triples(RATES, SERIES, 2.0, 1, 61, 6, 1e4),
         ValueError,
         "halvings must be from 0 to 60, got 61",
     ),
+    "nodes that no lanes hold": (
+        lambda: _core.sweep_between(CHAIN, FACTOR[:1].repeat(7, axis=0).T.copy()),
+        ValueError,
+        "nodes must be a multiple of 8 up to 64, got 7",
+    ),
+    "values of another chain": (
+        lambda: _core.sweep(
+            CHAIN,
+            FACTOR.T.copy(),
+            PORT,
+            PORT,
+            (np.tile(FACTOR, (8, 1)).T.copy(), np.ones((3, 2, 8 * len(FACTOR))), np.ones((1, 1))),
+        ),
+        ValueError,
+        "values must have 0 entries along axis 0, got 3",
+    ),
+    "no equal parts": (
+        lambda: _core.space_triples(RATES, SERIES, 2.0, 0, 6, 6, 1e4),
+        ValueError,
+        "equal must be from 1 to 131072, got 0",
+    ),
     "doublings below 0": (
-        lambda: _core.space_triples(RATES, SERIES, 2.0, 6, -1, 1e4),
+        lambda: _core.space_triples(RATES, SERIES, 2.0, 1, 6, -1, 1e4),
         ValueError,
         "doublings must be from 0 to 60, got -1",
     ),
@@ -608,12 +633,12 @@ REFUSED = {
             (*SPACE[:2], SPACE[2] + 24, *SPACE[3:]), PLANE[:1], np.ones(1), SCALE[:1]
         ),
         ValueError,
-        r"nodes must be from 1 to 24 and at most 2\^halvings, got 25",
+        r"nodes must be from 1 to 24 and at most the parts of all halvings, got 25",
     ),
     "series of more nodes than parts": (
-        lambda: _core.space_triples(RATES, np.tile(SERIES, (3, 1, 1)), 2.0, 1, 1, 1e4),
+        lambda: _core.space_triples(RATES, np.tile(SERIES, (3, 1, 1)), 2.0, 1, 1, 1, 1e4),
         ValueError,
-        r"series must be from 1 to 24 and at most 2\^halvings, got 3",
+        r"series must be from 1 to 24 and at most the parts of all halvings, got 3",
     ),
     "pieces without inertia": (
         lambda: _core.space_count(

@@ -1,0 +1,61 @@
+"""Parts at many lines, by polynomials of the frequency between a few of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.array import Index, Real
+from ..base.chebyshev import fitted
+from ..response.bands import between
+from .assembly import SpaceParts, parts_at
+from .rope import Factors, SpaceRope
+
+NODES = 40  # Of a band. Parts end below their resonances; of strings, the nearest, 32 left 1e-14.
+MISSED = 1e-14
+"""The last two coefficients, of the largest entry of a matrix, beyond which a band is halved."""
+
+TOGETHER = 64  # Numbers of a line in a product: of more, threads of BLAS wait for each other.
+
+
+class Between(NamedTuple):
+    """Parts of a component at the lines of a band."""
+
+    weight: Real  # (lines, NODES)
+    values: Real  # (NODES, ..) real and imaginary parts beside each other, not scaled
+    shape: tuple[int, ...]  # of the matrices of a line
+    node: Index
+    missed: Real  # (3, parts) shares of the largest entries
+
+    @classmethod
+    def of(
+        cls, rope: SpaceRope, which: Index, frequency: Real, factors_at: Callable[[Real], Factors]
+    ) -> Between:
+        """Solve the nodes of increasing frequencies."""
+        nodes, weight = between(frequency, NODES)
+        factors = factors_at(nodes)
+        z = rope.scale(which, np.abs(factors.inertia))
+        parts = parts_at(rope, which, factors, z)
+        values = np.moveaxis(parts.matrices / _scales(z), 1, 0)
+        # scales of lines of their own are no polynomials
+        last = np.einsum("kn,n...->k...", fitted(NODES)[-2:], values) * _scales(z[-1:])[:, 0]
+        size = np.abs(values * _scales(z[-1:])[:, 0]).max(axis=(0, 3, 4))
+        missed = np.abs(last).max(axis=(0, 3, 4)) / np.where(size > 0, size, 1.0)
+        flat = np.ascontiguousarray(values).reshape(NODES, -1).view(np.float64)
+        return cls(weight, flat, values.shape[1:], parts.node, missed)
+
+    def at(self, lines: slice, z: Real) -> SpaceParts:
+        """Return the parts at some lines."""
+        weight = self.weight[lines]
+        blocks = np.array_split(self.values, -(-self.values.shape[1] // TOGETHER), axis=1)
+        values = np.concatenate([weight @ one for one in blocks], axis=1).view(np.complex128)
+        matrices = np.moveaxis(values.reshape(len(weight), *self.shape), 0, 1) * _scales(z)
+        return SpaceParts(matrices, self.node, self.missed)
+
+
+def _scales(z: Real) -> Real:
+    """Return what scaled D, G and Q are of those in metres and newtons, (3, n, 1, width, width)."""
+    one, other = z[:, None, :, None], z[:, None, None, :]
+    return np.stack([other / one, 1 / (one * other), one * other])
