@@ -225,6 +225,4 @@ def rounding_of(model: Compiled, which: Index, eigenvalue: Real, bound: Real) ->
             model, component, SoughtRoots(eigenvalue[mine], bound[mine], undamped_factors)
         )
         error[mine] = np.where(np.isnan(told), bound[mine], told)
-    error = error_in_hertz(eigenvalue, error) + HERTZ * np.abs(in_hertz(eigenvalue))
-    error.setflags(write=False)
-    return error
+    return error_in_hertz(eigenvalue, error) + HERTZ * np.abs(in_hertz(eigenvalue))

@@ -193,7 +193,6 @@ def _mesh(model: Compiled, loads: dict[Point, float], displacement: Real) -> Rea
             error = error + np.abs(displacement - _deflected(spans, loads, x, solver_of)[0])
         except (SceneError, SolveError):
             error = np.full(displacement.shape, np.inf)
-    error.setflags(write=False)
     return error
 
 
@@ -294,7 +293,6 @@ def _rounding(
         if any(point[0] in component for point in loads):
             at = [model.coordinates.index(c) for c in component]
             error[:, at] = bounded(_push(model, component, loads, nodes))
-    error.setflags(write=False)
     return error
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..base import check
 from ..base.answer import Cost
 from ..base.array import Complex, Flags, Real
-from ..base.computed import Late, LateCall
+from ..base.computed import Late
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES
 from ..chain import tip
@@ -100,7 +100,7 @@ def solve_harmonic(
         ),
         mesh=mesh,
         rounding=Late(rounding),
-        solve_bound=LateCall(lambda: relative(value, of_value(got.bound()))),
+        rounding_bound=Late(lambda: relative(value, of_value(got.bound()))),
         solve_rates=partial(
             FrequencyRates, model, omega, drives, responses, got.answered, got.value
         ),
@@ -133,8 +133,10 @@ class Receptance(NamedTuple):
             if found is None:
                 error[block], certain[block] = limit, False
                 continue
-            # on a resonance that takes no part wider numbers know less than the bound does
-            certain[block] = told = np.isfinite(found.error) & (found.noise <= limit)
+            # on a resonance that takes no part wider numbers know less than the bound does, but
+            # where they differ by more than they know, a bound that is less is wrong
+            known = np.maximum(limit, found.error / 2)
+            certain[block] = told = np.isfinite(found.error) & (found.noise <= known)
             error[block] = np.where(told, found.error, limit)
         return error, certain
 

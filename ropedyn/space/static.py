@@ -61,7 +61,6 @@ def solve_static(
         limits = np.zeros((2, *displacement.shape))
         for one in solved:
             limits[:, :, one.own] = one.rounding()
-        limits.setflags(write=False)
         return limits[0][:, own], limits[1][:, own]
 
     return Deflection(
@@ -165,9 +164,7 @@ def _under(rope: SpaceRope, loads: dict[Point, float]) -> list[LoadedPart]:
 
 
 def _same(shape: tuple[int, ...], value: float) -> Real:
-    error = np.full(shape, value)
-    error.setflags(write=False)
-    return error
+    return np.full(shape, value)
 
 
 def _solved(system: Assembly, right: Real) -> LoadedFields:
