@@ -26,7 +26,7 @@ from ..scene.scene import Scene
 from .at_node import answers_at_nodes
 from .frf import FRF, MeshOfResponse, RoundingOfResponse
 from .frf_rate import Answered, FrequencyRates
-from .measured import measured
+from .measured import measured, surely
 from .modal_sum import Summed, modal_sum, refuse_other_damping
 from .moved_end import gathered, moves_ends
 from .question import Bound, Question, Solver, angular, workers_of
@@ -133,11 +133,7 @@ class Receptance(NamedTuple):
             if found is None:
                 error[block], certain[block] = limit, False
                 continue
-            # on a resonance that takes no part wider numbers know less than the bound does, but
-            # where they differ by more than they know, a bound that is less is wrong
-            known = np.maximum(limit, found.error / 2)
-            certain[block] = told = np.isfinite(found.error) & (found.noise <= known)
-            error[block] = np.where(told, found.error, limit)
+            error[block], certain[block] = surely(found.error, found.noise, limit)
         return error, certain
 
 

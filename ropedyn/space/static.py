@@ -74,6 +74,7 @@ def solve_static(
             method_of(scene), len(rope.length), rope.unknowns, sweeps=1, factorisations=len(solved)
         ),
         rounding_error=Late(lambda: rounding()[0]),
+        rounding_bound=Late(lambda: rounding()[0]),
         force_rounding_error=Late(lambda: rounding()[1]),
         mesh_error=Late(mesh),
     )
