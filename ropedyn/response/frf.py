@@ -88,7 +88,7 @@ class FRF(Curves):
     rounding_measured : ndarray of bool, as value
         True where that is the distance to the same response in wider numbers, with their own
         error, which takes some hundred times as long as the response; else it is a bound to first
-        order, which is some hundred times the error: where the tension grows along the rope, of
+        order, which is some hundred times the error: where a string has no tension at an end, of
         `ModalDamping`, on a resonance that takes no part, and of questions too long for wider
         numbers.
     rounding_bound : ndarray, as value
