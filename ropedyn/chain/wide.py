@@ -82,6 +82,11 @@ def moved(array: Array, amount: float, random: np.random.Generator, square: bool
     return np.asarray(array * (1 + Number(amount) * off))
 
 
+def rescaled(random: np.random.Generator, width: int) -> Array:
+    """Return by how much units are moved, so that everything rounds otherwise, (width, 1)."""
+    return random.uniform(0.7, 1.4, (width, 1)).astype(Number)
+
+
 def wide_of(model: Compiled) -> Wide | None:
     """Return the chain of a model in wide numbers; None where its tension vanishes somewhere."""
     chain = model.chain

@@ -141,8 +141,8 @@ def solve_static(
         force=force,
         load=tuple(loads.items()),
         critical_loads=critical_loads(model, loads) if unstable else 0,
-        rounding_error=Late(lambda: measured()[0].over(bounds[0]())),
-        force_rounding_error=Late(lambda: measured()[1].over(bounds[1]())),
+        rounding_error=Late(lambda: measured()[0].over(bounds[0](), solver)),
+        force_rounding_error=Late(lambda: measured()[1].over(bounds[1](), solver)),
         rounding_bound=Late(bounds[0]),
         mesh_error=Late(partial(_mesh, model, loads, displacement)),
         cost=Cost(solver, len(model.x) - 1, unknowns, *work),
@@ -154,20 +154,17 @@ class Measured(NamedTuple):
 
     error: Real  # infinite where there are none
     noise: Real
-    size: Real  # largest of each coordinate, (coordinates,)
 
-    def over(self, bound: Real) -> Real:
+    def over(self, bound: Real, solver: str) -> Real:
         """Return that, or a bound where it says less."""
-        # where bending fades the bound of "band" is less than what its rows have left
-        return surely(self.error, self.noise, bound, size=self.size)[0]
+        return surely(self.error, self.noise, bound, solver=solver)[0]
 
 
 def _measured(
     model: Compiled, loads: dict[Point, float], x: Real, answer: tuple[Real, Real]
 ) -> tuple[Measured, Measured]:
     """Measure what rounding did to displacement and force."""
-    none = np.zeros(answer[0].shape)
-    found = [Measured(none.copy(), none.copy(), np.abs(one).max(axis=0)) for one in answer]
+    found = [Measured(*np.zeros((2, *one.shape))) for one in answer]
     for component in model.components:
         here = {point: value for point, value in loads.items() if point[0] in component}
         if not here:

@@ -75,7 +75,9 @@ def solve_harmonic(
         return np.asarray(found[drive] * np.abs(power))
 
     def rounding() -> RoundingOfResponse:
-        error, certain = got.error() if tight else (got.bound(), np.zeros(got.value.shape, bool))
+        error, certain = (
+            got.error(solver) if tight else (got.bound(), np.zeros(got.value.shape, bool))
+        )
         certain = tip.gather_flags(model, responses, certain)
         return RoundingOfResponse.of(value, of_value(error), certain[drive])
 
@@ -122,7 +124,7 @@ class Receptance(NamedTuple):
         """Bound what rounding does, as value."""
         return gathered(self.value.shape, self.bounds)
 
-    def error(self) -> tuple[Real, Flags]:
+    def error(self, solver: str) -> tuple[Real, Flags]:
         """Measure what rounding did, as value, or bound it; and where it was measured."""
         error, certain = np.zeros(self.value.shape), np.ones(self.value.shape, dtype=np.bool_)
         for (block, bound), answered in zip(self.bounds, self.answered):
@@ -133,7 +135,7 @@ class Receptance(NamedTuple):
             if found is None:
                 error[block], certain[block] = limit, False
                 continue
-            error[block], certain[block] = surely(found.error, found.noise, limit)
+            error[block], certain[block] = surely(found.error, found.noise, limit, solver=solver)
         return error, certain
 
 

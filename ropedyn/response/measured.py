@@ -26,6 +26,7 @@ from ..chain.wide import (
     factors_of,
     moved,
     narrow,
+    rescaled,
     wide_of,
 )
 from ..chain.witness import Loads, NodeFields, respond
@@ -78,14 +79,14 @@ def off_by(value: Array, once: Array, noise: Array) -> Real:
         return np.where(np.isfinite(error), error, np.inf).astype(float)
 
 
-def surely(error: Real, noise: Real, bound: Real, *, size: Any = 0.0) -> tuple[Real, Flags]:
-    """Return what was measured where that says more than a bound, and where that is.
-
-    `size` is of numbers beside, of which all digits are known, and what is left of them is not.
-    """
+def surely(error: Real, noise: Real, bound: Real, *, solver: str) -> tuple[Real, Flags]:
+    """Return what was measured where that says more than a bound, and where that is."""
     # on a resonance that takes no part wider numbers know less than the bound does, but where they
     # differ by more than they know, a bound that is less is wrong
-    told = np.isfinite(error) & (noise <= np.maximum(np.maximum(bound, error / 2), EPS * size))
+    told = np.isfinite(error) & (noise <= np.maximum(bound, error / 2))
+    if solver != "sweep":
+        # of the residuals of all rows, that of assembled solvers misses what little is left of them
+        told |= noise > bound
     return np.where(told, error, bound), told
 
 
@@ -144,13 +145,14 @@ def _perturbed(
 ) -> Iterator[tuple[NodeFields | None, np.random.Generator | None]]:
     """Yield what loads cause in wide numbers, then in others that are a little off."""
     scales = _core.scales(narrow(chain), np.ascontiguousarray(factor.astype(np.complex128)))
-    z, loads = 2.0 ** np.round(np.log2(scales)).astype(Number), asked.loads
-    row = loads.row.astype(Number)
-    yield respond(chain, as_real(factor), z, loads._replace(row=row), asked.watched), None
+    unit: Array = 2.0 ** np.round(np.log2(scales)).astype(Number)
+    loads = asked.loads._replace(row=asked.loads.row.astype(Number))
+    yield respond(chain, as_real(factor), unit, loads, asked.watched), None
     for seed in SEEDS:
         random = np.random.default_rng(seed)
         own, off = wide.moved(chain, seed), _moved_factors(factor, random)
-        push = loads._replace(row=moved(row, asked.rough, random))
+        z = unit * rescaled(random, len(unit))
+        push = loads._replace(row=moved(loads.row, asked.rough, random))
         yield respond(own, as_real(off), z, push, asked.watched), random
 
 

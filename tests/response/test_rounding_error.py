@@ -135,6 +135,9 @@ def test_rounding_error_of_very_many_lines_is_no_useless_bound(many, claim):
         pytest.param(500404, id="bending fades over two"),
         pytest.param(501668, id="pushed, twist and bending nearly one"),
         pytest.param(503597, id="twist and pull nearly one"),
+        pytest.param(115, id="faded to nothing at rest", marks=pytest.mark.slow),
+        pytest.param(486, id="singular at rest", marks=pytest.mark.slow),
+        pytest.param(701, id="faded behind heavy masses", marks=pytest.mark.slow),
     ],
 )
 @pytest.mark.parametrize("solver", SOLVERS)
