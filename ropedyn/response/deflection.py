@@ -149,7 +149,7 @@ def solve_static(
     )
 
 
-class Measured(NamedTuple):
+class FromWide(NamedTuple):
     """How far an answer is from wider numbers, and how little these know, (nodes, coordinates)."""
 
     error: Real  # infinite where there are none
@@ -162,9 +162,9 @@ class Measured(NamedTuple):
 
 def _measured(
     model: Compiled, loads: dict[Point, float], x: Real, answer: tuple[Real, Real]
-) -> tuple[Measured, Measured]:
+) -> tuple[FromWide, FromWide]:
     """Measure what rounding did to displacement and force."""
-    found = [Measured(*np.zeros((2, *one.shape))) for one in answer]
+    found = [FromWide(*np.zeros((2, *one.shape))) for one in answer]
     for component in model.components:
         here = {point: value for point, value in loads.items() if point[0] in component}
         if not here:
