@@ -110,7 +110,8 @@ class Model(Compiled):
             dense symmetric problem of assembled matrices (see csrc/assembled), whose stiffness
             loses digits as n^4: of the first frequency of a clamped beam about 11 are right with
             64 elements, 7 with 512, 6 with 1024. Time grows as n^3; more than 8000 unknowns are
-            refused, and Ctrl-C waits for the dense solution.
+            refused, and Ctrl-C waits for the last call of LAPACK, which takes about 0.5 s
+            with 2000 unknowns and 3 s with 3000, as n^3.
         points : int, optional
             Of continuous spans: shapes are given at the ends of so many equal parts of each span
             or element, exactly; 16 to a half wave of the highest mode where left out.

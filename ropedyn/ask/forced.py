@@ -213,7 +213,7 @@ class StaticQuestion(AnyQuestion):
 
     def rounding(self, answer: Deflection) -> Real:
         """Return the relative error that rounding causes."""
-        return relative_to(self.values(answer), self._in_loads(answer, answer.rounding_error))
+        return relative_to(self.values(answer), self._in_loads(answer, answer.rounding_bound))
 
     def mesh(self, answer: Deflection) -> Real:
         """Return the relative error that the mesh causes."""

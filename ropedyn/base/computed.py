@@ -9,6 +9,8 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, partial, wraps
 from typing import Any, Generic, ParamSpec, Self, TypeVar, cast, overload
 
+import numpy as np
+
 Value = TypeVar("Value")
 Given = ParamSpec("Given")
 
@@ -35,7 +37,7 @@ class computed(Reader[Value], cached_property[Value]):
         """Compute it, since it is not kept yet."""
         assert self.attrname is not None
         with paid(thing):
-            return vars(thing).setdefault(self.attrname, self.func(thing))
+            return vars(thing).setdefault(self.attrname, _shown(self.func(thing)))
 
 
 @contextmanager
@@ -110,14 +112,14 @@ class Lazy(Reader[Value]):
         if self.name not in kept:
             assert compute is not None
             with paid(thing):
-                kept.setdefault(self.name, compute())
+                kept.setdefault(self.name, _shown(compute()))
                 kept.pop(self.unread, None)
         return kept[self.name]
 
 
 @dataclass(frozen=True, eq=False)
 class Late:
-    """What computes a lazy field; it is pickled as its answer, which any function can give."""
+    """What computes a lazy field, by any function; it is pickled as a call that has the answer."""
 
     compute: Callable[[], Any]
 
@@ -126,20 +128,19 @@ class Late:
         return self.compute()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return how the answer is made again."""
-        return _same, (self.compute(),)
-
-
-class LateCall(Late):
-    """What is asked for its answer and stays a call; it is pickled as one that knows it."""
-
-    def __reduce__(self) -> tuple[Any, ...]:
         """Return how a call with that answer is made."""
         return partial, (_same, self.compute())
 
 
 def _same(answer: Any) -> Any:
     return answer
+
+
+def _shown(value: Value) -> Value:
+    """Make an array that is kept read-only."""
+    if isinstance(value, np.ndarray):
+        value.setflags(write=False)
+    return value
 
 
 def lazy(kind: type[Any], axes: dict[str, Any] | None = None) -> Any:

@@ -17,6 +17,8 @@ from ..scene.parts.stretch import FACTOR, RopeChange, changes
 from ..scene.rope import ACROSS, Rope, own_number
 from ..scene.scene import Scene
 from ..scene.stations import nearest
+from ..scene.tension import Tension
+from ..scene.weight import graded
 from .chain import CONTINUOUS, Chain
 from .compile import (
     INERTIA,
@@ -42,6 +44,7 @@ COARSE = 2 * float(np.finfo(float).eps)  # How far those that are known as doubl
 SEEDS = (1, 2)  # Numbers are moved so many times,
 SURE = 8.0  # and what that does is taken so many times.
 SPARE = 1 / 64  # A wide value's own error is less than this part of what is measured.
+STEEP = 1024.0  # Tension does not grow by more than so many times what it is anywhere.
 SAME = 1e-12  # Doubles that differ by no more are roundings of the same numbers.
 
 
@@ -67,7 +70,7 @@ class Wide(NamedTuple):
 
 
 SQUARE = ("flexibility", "mass", "stiffness", "damping")  # Symmetric matrices.
-ALONG = ("length", "tension", "inertia", "drag", "sag")  # Of elements, not all symmetric.
+ALONG = ("length", "tension", "inertia", "drag", "sag", "rise")  # Of elements, not all symmetric.
 MOVED = (*SQUARE, *ALONG, "hinge", "attached_row", "attached_value")
 
 
@@ -79,10 +82,18 @@ def moved(array: Array, amount: float, random: np.random.Generator, square: bool
     return np.asarray(array * (1 + Number(amount) * off))
 
 
+def rescaled(random: np.random.Generator, width: int) -> Array:
+    """Return by how much units are moved, so that everything rounds otherwise, (width, 1)."""
+    return random.uniform(0.7, 1.4, (width, 1)).astype(Number)
+
+
 def wide_of(model: Compiled) -> Wide | None:
-    """Return the chain of a model in wide numbers, None where tension grows along the rope."""
-    if model.scene.is_graded:
-        return None
+    """Return the chain of a model in wide numbers; None where its tension vanishes somewhere."""
+    chain = model.chain
+    if chain.rise is not None:
+        least = chain.tension - np.abs(chain.rise) / 2
+        if (least * STEEP <= np.abs(chain.rise)).any():
+            return None
     own = _compiled(model)
     return own if own is not None else _given(model)
 
@@ -100,7 +111,7 @@ def _compiled(model: Compiled) -> Wide | None:
     scene, chain = model.scene, model.chain
     at = station_nodes(model)
     counts, stations = np.diff(at), stations_of(scene).astype(Number)
-    if chain.rise is not None or at[-1] != len(model.x) - 1 or (counts < 1).any():
+    if at[-1] != len(model.x) - 1 or (counts < 1).any():
         return None
     length = np.diff(stations) / counts
     parts = zip(stations, length, counts)
@@ -116,7 +127,32 @@ def _compiled(model: Compiled) -> Wide | None:
             flexibility=chain.flexibility[spans].astype(Number),
         )
         coarse |= {"sag", "flexibility"}
+    if scene.is_graded:
+        wide = _graded(scene, wide, stations, x)
+        coarse |= {"tension", "rise"} if coarse else set()
     return Wide(wide, x, frozenset(coarse)) if _alike(chain, wide) else None
+
+
+def _graded(scene: Scene, wide: Chain, stations: Array, x: Array) -> Chain:
+    """Return the chain with every element a distinct one, and the tension of each."""
+    assert scene.gravity is not None
+    given = scene.tension if isinstance(scene.tension, Tension) else Tension(scene.tension)
+    density = [own("linear_density") for own in _each(scene, stations.astype(float))]
+    along = Number(scene.gravity.g) * np.sin(Number(scene.gravity.inclination))
+    tension = graded(stations, np.array(density), along, tension=given, parts=scene.parts)
+    left, right = tension.parted(x)
+    each = wide.element_of
+    names = ("flexibility", "length", "inertia", "drag", "sag")
+    own: dict[str, Any] = {n: getattr(wide, n) for n in names}
+    own = {n: None if one is None else one[each] for n, one in own.items()}
+    return wide._replace(
+        **own,
+        tension=(left + right) / 2,
+        rise=right - left if wide.kind == CONTINUOUS else None,
+        first=np.arange(len(x), dtype=np.int32),
+        element=np.arange(len(each), dtype=np.int32),
+        term=wide.term_of,
+    )
 
 
 def _let_go(chain: Chain, stations: Index, wide: Chain) -> Chain:
@@ -162,17 +198,22 @@ def _alike(chain: Chain, wide: Chain) -> bool:
 
 def _ropes(scene: Scene, stations: Real) -> tuple[Array, Array, set[str]]:
     """Return flexibility and inertia of each span, and what of them is known as doubles alone."""
-    parts, rope = stretches(scene.parts), scene.rope
-    change = changes(parts, stations) if parts else np.array([RopeChange()] * (len(stations) - 1))
     channels = 3 + ("y" in scene.coordinates)
     still = has_inertia(scene)
     flexibility, inertia = [], []
-    for row in change:
-        own = _Numbers(rope, RopeChange(*row.tolist()))
+    for own in _each(scene, stations):
         flexibility.append(_section(own, channels))
         inertia.append([own(INERTIA[c]) for c in scene.coordinates] * still)
-    coarse = {"flexibility", "inertia", "mass"} if len(parts) > 1 else set()
+    several = len(stretches(scene.parts)) > 1
+    coarse = {"flexibility", "inertia", "mass"} if several else set()
     return np.array(flexibility), np.array(inertia), coarse
+
+
+def _each(scene: Scene, stations: Real) -> list[_Numbers]:
+    """Return the properties of the rope between stations."""
+    parts = stretches(scene.parts)
+    change = changes(parts, stations) if parts else np.array([RopeChange()] * (len(stations) - 1))
+    return [_Numbers(scene.rope, RopeChange(*row.tolist())) for row in change]
 
 
 class _Numbers(NamedTuple):

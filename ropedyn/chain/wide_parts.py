@@ -17,6 +17,7 @@ DIFFERENCE, RIGID = KINDS.index("difference"), KINDS.index("rigid")
 WIRE = ATTACHED.index("broken wire")
 AMPLIFIED = 4.0  # Joints that move more than so many times what their ends do are not joined.
 REACH = 0.5  # Series begin at pieces across which nothing changes by more.
+GROWS = 0.125  # Nor does the tension of a string: its series go on as powers of that.
 TERMS = 24  # REACH^24/24! is nothing at 64 digits of 2, and at 113 with 10 more terms.
 
 
@@ -173,17 +174,25 @@ def rate_matrix(f: Frame, e: int) -> Array:
 
 def summed(E: Array, length: Any) -> Triple:
     """Return the triple of a short piece by the series of the exponential."""
-    w, h = E.shape[1] // 2, E * length
+    h = E * length
     # sum of h^n/n! without the first term, by Horner
     X = h / TERMS
     for n in range(TERMS - 1, 0, -1):
         X = (h + h @ X) / n
-    back = inverse(identity(h)[:w, :w] + X[:, w:, w:])
+    return of_transition(X)
+
+
+def of_transition(X: Array) -> Triple:
+    """Return the triple of a transition I + X of (u, f)."""
+    w = X.shape[1] // 2
+    back = inverse(identity(X)[:w, :w] + X[:, w:, w:])
     return Triple(turned(-back @ X[:, w:, w:]), X[:, :w, w:] @ back, back @ X[:, w:, :w])
 
 
-def pieces_of(f: Frame, e: int, patient: bool) -> tuple[Triple, int]:
-    """Return a piece of a tensed or continuous element, and how many such it has."""
+def pieces_of(f: Frame, e: int, patient: bool) -> list[Triple]:
+    """Return the pieces of a tensed or continuous element, from left to right."""
+    if f.chain.rise is not None and f.chain.rise[e] != 0:
+        return graded_pieces(f, e, patient)
     E, length = rate_matrix(f, e), f.chain.length[e]
     change = float((sizes(E).sum(axis=2).max() * length).real)
     halvings = max(0, int(np.ceil(np.log2(max(change, 1e-300) / REACH))))
@@ -191,9 +200,47 @@ def pieces_of(f: Frame, e: int, patient: bool) -> tuple[Triple, int]:
     for k in range(halvings):
         joined, M = join(piece, piece, None)
         if patient and not is_calm(M):
-            return piece, 2 ** (halvings - k)
+            return [piece] * 2 ** (halvings - k)
         piece = joined
-    return piece, 1
+    return [piece]
+
+
+def graded_pieces(f: Frame, e: int, patient: bool) -> list[Triple]:
+    """Return the pieces of an element along which the tension grows."""
+    chain, pull = f.chain, f.factor[TENSION][:, None, None]
+    assert chain.rise is not None
+    E, length, rise = rate_matrix(f, e), chain.length[e], chain.rise[e]
+    w, mean = len(f.names), chain.tension[e]
+    strings = [f.at(a) for a, b in TRANSVERSE if f.at(a) >= 0 and f.at(b) < 0]
+    least = mean - abs(rise) / 2
+    change = float((sizes(E).sum(axis=2).max() * length).real) + float(abs(rise / mean))
+    change = max(change / REACH, float(abs(rise) / least) / GROWS if strings else 0.0)
+    count = 2 ** max(0, int(np.ceil(np.log2(max(change, 1e-300)))))
+    step, T = length / count, mean - rise / 2 + rise * np.arange(count)[:, None] / count
+    # of E + s slope, and of strings T z' = F with T + s slope
+    A, slope = np.repeat(E[None], count, axis=0), np.zeros_like(E)
+    grows = np.zeros((count, 1, 2 * w, 1), dtype=T.dtype)
+    for _, beta in f.bent:
+        of_tension = pull[:, 0, 0] * f.z[beta] ** 2
+        A[:, :, w + beta, beta] += (T - mean) * of_tension
+        slope[:, w + beta, beta] = rise / length * of_tension
+    for z in strings:
+        A[:, :, z, w + z] = 1 / (T * pull[:, 0, 0] * f.z[z] ** 2)
+        grows[:, 0, z, 0] = rise / count / T[:, 0]
+    A, slope = A * step, slope * step**2
+    last, Y = np.zeros_like(A), np.broadcast_to(identity(A), A.shape)
+    X = np.zeros_like(A)
+    for n in range(TERMS):
+        last, Y = Y, (A @ Y + slope @ last - n * grows * Y) / (n + 1)
+        X = X + Y
+    every = of_transition(X.reshape(-1, 2 * w, 2 * w))
+    many = [Triple(*(one.reshape(count, -1, w, w)[k] for one in every)) for k in range(count)]
+    while len(many) > 1:
+        joined = [join(one, two, None) for one, two in zip(many[::2], many[1::2])]
+        if patient and not all(is_calm(M) for _, M in joined):
+            break
+        many = [one for one, _ in joined]
+    return many
 
 
 def levers(f: Frame, e: int) -> list[list[tuple[int, int, Any]]]:

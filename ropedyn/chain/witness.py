@@ -76,7 +76,7 @@ class Station(NamedTuple):
 def stations_of(elements: Frame, frame: Frame, patient: bool, asked: Array) -> Iterator[Station]:
     """Yield the stations, from left to right; elements may be the same at all lines."""
     chain = frame.chain
-    made: dict[int, tuple[Triple, int] | Strut] = {}
+    made: dict[int, list[Triple] | Strut] = {}
     for k in range(len(chain.first) - 1):
         e, term = int(chain.element[k]), int(chain.term[k])
         if e not in made:
@@ -87,32 +87,32 @@ def stations_of(elements: Frame, frame: Frame, patient: bool, asked: Array) -> I
     yield Station(chain.nodes - 1, int(chain.term[-1]), None)
 
 
-def element_of(f: Frame, e: int, patient: bool) -> tuple[Triple, int] | Strut:
-    """Return a piece of an element and how many it has, or the equations of one that has none."""
+def element_of(f: Frame, e: int, patient: bool) -> list[Triple] | Strut:
+    """Return the pieces of an element, or the equations of one that has none."""
     if f.chain.kind in (TENSED, CONTINUOUS) or not f.bent:
         return pieces_of(f, e, patient)
     bent, string = stiff_element(f, e)
     if not (string != 0).any():
-        return bent, 1
+        return [bent]
     whole, X = beside_string(bent, string)
-    return (whole, 1) if is_calm(X) else Strut(identity(bent.D) + bent.D, bent.G, string)
+    return [whole] if is_calm(X) else Strut(identity(bent.D) + bent.D, bent.G, string)
 
 
 def stretch(
-    f: Frame, piece: tuple[Triple, int] | Strut, term: int, nodes: list[int], patient: bool
+    f: Frame, pieces: list[Triple] | Strut, term: int, nodes: list[int], patient: bool
 ) -> Iterator[Station]:
     """Yield the stations of equal elements between nodes with the same term."""
     hinge = None if f.chain.hinge is None else f.chain.hinge[term]
     opens = hinge is not None and bool((hinge > 0).any())
     foot = f.chain.attached_term is not None and bool((f.chain.attached_term == term).any())
-    alone = opens or foot or isinstance(piece, Strut) or piece[1] > 1
+    alone = opens or foot or isinstance(pieces, Strut) or len(pieces) > 1
     alone |= bool(f.chain.held[term].any())
-    powers = None if alone or isinstance(piece, Strut) else [piece[0]]
+    powers = None if alone or isinstance(pieces, Strut) else [pieces[0]]
     N = node_term(f, term)
     for begin, end in pairwise(nodes):
         if powers is None:
             for node in range(begin, end):
-                yield from single(f, piece, node, term, hinge if opens else None)
+                yield from single(f, pieces, node, term, hinge if opens else None)
             continue
         left, at = end - begin, begin
         while 2 ** len(powers) <= left and len(powers) < 60:
@@ -127,19 +127,18 @@ def stretch(
 
 
 def single(
-    f: Frame, piece: tuple[Triple, int] | Strut, node: int, term: int, hinge: Array | None
+    f: Frame, pieces: list[Triple] | Strut, node: int, term: int, hinge: Array | None
 ) -> Iterator[Station]:
     """Yield the stations of a node and the element on its right."""
     if hinge is not None:
         yield Station(node, term, hinge_rows(f, hinge))
         node, term = -1, -1
-    if isinstance(piece, Strut):
-        yield Station(node, term, piece)
+    if isinstance(pieces, Strut):
+        yield Station(node, term, pieces)
         return
-    rows = rows_of(piece[0])
-    yield Station(node, term, rows)
-    for _ in range(piece[1] - 1):
-        yield Station(-1, -1, rows)
+    for piece in pieces:
+        yield Station(node, term, rows_of(piece))
+        node, term = -1, -1
 
 
 def respond(

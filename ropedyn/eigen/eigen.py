@@ -103,9 +103,7 @@ def _which(found: Sequence[ComponentModes], order: Index) -> Index:
 
 def _planes(model: Compiled, which: Index) -> NDArray[np.str_]:
     """Return the plane of each mode: that of the coordinates that move with it."""
-    plane = np.array([plane_of(component) for component in model.components])[which]
-    plane.setflags(write=False)
-    return plane
+    return np.array([plane_of(component) for component in model.components])[which]
 
 
 def check_asked(number: int | None, below: float | None) -> float:

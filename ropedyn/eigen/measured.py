@@ -18,7 +18,7 @@ from ..base.array import Index, Real
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT, Compiled
 from ..chain.port import cut, stops
-from ..chain.wide import FINE, SEEDS, SPARE, SURE, Number, as_real, moved, narrow, wide_of
+from ..chain.wide import FINE, SEEDS, SPARE, SURE, Number, as_real, moved, narrow, rescaled, wide_of
 from ..chain.wide_parts import inverse
 from ..chain.witness import Loads, respond
 from .spectrum import error_in_hertz, in_hertz
@@ -72,7 +72,7 @@ def measured(model: Compiled, component: tuple[str, ...], asked: SoughtRoots) ->
     for seed in (None, *SEEDS):
         own = chain if seed is None else wide.moved(chain, seed)
         factors, loads = _moved(asked.factors, seed), _loads(chain, MOST + 1)
-        motion = partial(_motion, own, narrow(chain), factors, loads)
+        motion = partial(_motion, own, _units(chain, seed), loads, factors)
         with np.errstate(all="ignore"):
             one = _roots(motion, asked.value, beside, groups)
         if one is None:
@@ -116,6 +116,14 @@ def _moved(factors: Callable[[Array], Array], seed: int | None) -> Callable[[Arr
     random = np.random.default_rng(seed)
     off = moved(np.ones((5, 1), dtype=Number), FINE, random)
     return lambda value: factors(value) * off
+
+
+def _units(chain: Chain, seed: int | None) -> Array:
+    """Return by how much units are moved."""
+    width = chain.held.shape[1]
+    if seed is None:
+        return np.ones((width, 1), dtype=Number)
+    return rescaled(np.random.default_rng(seed), width)
 
 
 def _roots(motion: Motion, value: Array, beside: Real, groups: list[Index]) -> Array | None:
@@ -194,12 +202,12 @@ def _loads(chain: Chain, count: int) -> Loads:
 
 
 def _motion(
-    chain: Chain, plain: Chain, factors: Callable[[Array], Array], loads: Loads, value: Array
+    chain: Chain, units: Array, loads: Loads, factors: Callable[[Array], Array], value: Array
 ) -> Array | None:
     """Return what loads move at themselves, (lines, loads, loads)."""
-    factor = factors(value)
+    factor, plain = factors(value), narrow(chain)
     scales = _core.scales(plain, np.ascontiguousarray(factor.astype(np.complex128)))
-    z = 2.0 ** np.round(np.log2(scales)).astype(Number)
+    z = 2.0 ** np.round(np.log2(scales)).astype(Number) * units
     # forces in the units of the middle line, in which all coordinates count alike
     unit = z[:, z.shape[1] // 2]
     own = loads._replace(row=loads.row / unit[:, None])
@@ -225,6 +233,4 @@ def rounding_of(model: Compiled, which: Index, eigenvalue: Real, bound: Real) ->
             model, component, SoughtRoots(eigenvalue[mine], bound[mine], undamped_factors)
         )
         error[mine] = np.where(np.isnan(told), bound[mine], told)
-    error = error_in_hertz(eigenvalue, error) + HERTZ * np.abs(in_hertz(eigenvalue))
-    error.setflags(write=False)
-    return error
+    return error_in_hertz(eigenvalue, error) + HERTZ * np.abs(in_hertz(eigenvalue))

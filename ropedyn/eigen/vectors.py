@@ -65,9 +65,7 @@ def points_for(model: Compiled, eigenvalue: Real) -> int:
 
 def places_within(model: Compiled, eigenvalue: Real, points: int | None) -> Real:
     """Return where shapes of continuous spans are given."""
-    x = within(model.x, points or points_for(model, eigenvalue))
-    x.setflags(write=False)
-    return x
+    return within(model.x, points or points_for(model, eigenvalue))
 
 
 def later_within(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,6 +25,7 @@ from ..chain.port import Point, Ports, cut, ports, stops
 from ..chain.reaction import left_ends
 from ..scene.end import end_of
 from .critical import critical_loads, exceeds, refuse_critical
+from .measured import measured_at_rest, off_by, surely
 from .rounding import bound_of
 
 LOAD = 'a mapping such as {("z", 0.5): 10.0}'
@@ -47,10 +48,14 @@ class Deflection(Answer):
         What the surroundings put on each node: loads, and reactions where a coordinate is held or
         a spring stands [N, N m].
     rounding_error : ndarray, shape (nodes, coordinates)
-        Bound of what rounding does to the displacement, to first order, computed when it is read
-        [m, rad]. The closer a load is to a critical one the larger it is.
+        What rounding did to the displacement, measured when it is read as the distance to the same
+        deflection in wider numbers with their own error [m, rad]; where these do not tell, as
+        where a string has no tension at an end, `rounding_bound`.
     force_rounding_error : ndarray, shape (nodes, coordinates)
         The same of the forces, which are what the rope beside a node leaves of its forces [N, N m].
+    rounding_bound : ndarray, shape (nodes, coordinates)
+        A bound of what rounding does to the displacement, to first order, some hundred times as
+        large [m, rad]. The closer a load is to a critical one the larger it is.
     mesh_error : ndarray, shape (nodes, coordinates)
         How far a chain is from its continuous spans, solved when it is read, with what rounding
         does to these [m, rad]; 0 of these, infinite where they have no answer.
@@ -81,6 +86,7 @@ class Deflection(Answer):
     critical_loads: int
     cost: Cost
     rounding_error: Lazy[Real] = lazy(np.ndarray, axes=axes("node", "coordinate", unit="m or rad"))
+    rounding_bound: Lazy[Real] = lazy(np.ndarray, axes=axes("node", "coordinate", unit="m or rad"))
     force_rounding_error: Lazy[Real] = lazy(
         np.ndarray, axes=axes("node", "coordinate", unit="N or N m")
     )
@@ -123,9 +129,11 @@ def solve_static(
     else:
         x = model.x
     displacement, force, unknowns, work = _deflected(model, loads, x, solver_of)
-    motion_error, force_error = (
-        partial(of, solver_of.bound) for of in (_motion_error, solver_of.force_error)
-    )
+    bounds = [
+        cache(partial(_rounding, model, loads, x, partial(of, solver_of.bound)))
+        for of in (_motion_error, solver_of.force_error)
+    ]
+    measured = cache(partial(_measured, model, loads, x, (displacement, force)))
     return Deflection(
         coordinates=model.coordinates,
         x=x,
@@ -133,11 +141,43 @@ def solve_static(
         force=force,
         load=tuple(loads.items()),
         critical_loads=critical_loads(model, loads) if unstable else 0,
-        rounding_error=Late(partial(_rounding, model, loads, x, motion_error)),
-        force_rounding_error=Late(partial(_rounding, model, loads, x, force_error)),
+        rounding_error=Late(lambda: measured()[0].over(bounds[0](), solver)),
+        force_rounding_error=Late(lambda: measured()[1].over(bounds[1](), solver)),
+        rounding_bound=Late(bounds[0]),
         mesh_error=Late(partial(_mesh, model, loads, displacement)),
         cost=Cost(solver, len(model.x) - 1, unknowns, *work),
     )
+
+
+class FromWide(NamedTuple):
+    """How far an answer is from wider numbers, and how little these know, (nodes, coordinates)."""
+
+    error: Real  # infinite where there are none
+    noise: Real
+
+    def over(self, bound: Real, solver: str) -> Real:
+        """Return that, or a bound where it says less."""
+        return surely(self.error, self.noise, bound, solver=solver)[0]
+
+
+def _measured(
+    model: Compiled, loads: dict[Point, float], x: Real, answer: tuple[Real, Real]
+) -> tuple[FromWide, FromWide]:
+    """Measure what rounding did to displacement and force."""
+    found = [FromWide(*np.zeros((2, *one.shape))) for one in answer]
+    for component in model.components:
+        here = {point: value for point, value in loads.items() if point[0] in component}
+        if not here:
+            continue
+        at = [model.coordinates.index(c) for c in component]
+        wide = measured_at_rest(model, component, here, x)
+        for one, value, k in zip(found, answer, range(2)):
+            if wide is None:
+                one.error[:, at] = one.noise[:, at] = np.inf
+                continue
+            one.error[:, at] = off_by(value[:, at], wide[k], wide[2 + k])
+            one.noise[:, at] = wide[2 + k]
+    return found[0], found[1]
 
 
 def _pulled(model: Compiled) -> tuple[Compiled, dict[Point, float]]:
@@ -193,7 +233,6 @@ def _mesh(model: Compiled, loads: dict[Point, float], displacement: Real) -> Rea
             error = error + np.abs(displacement - _deflected(spans, loads, x, solver_of)[0])
         except (SceneError, SolveError):
             error = np.full(displacement.shape, np.inf)
-    error.setflags(write=False)
     return error
 
 
@@ -294,7 +333,6 @@ def _rounding(
         if any(point[0] in component for point in loads):
             at = [model.coordinates.index(c) for c in component]
             error[:, at] = bounded(_push(model, component, loads, nodes))
-    error.setflags(write=False)
     return error
 
 

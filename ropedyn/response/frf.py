@@ -88,9 +88,13 @@ class FRF(Curves):
     rounding_measured : ndarray of bool, as value
         True where that is the distance to the same response in wider numbers, with their own
         error, which takes some hundred times as long as the response; else it is a bound to first
-        order, which is some hundred times the error: where the tension grows along the rope, of
+        order, which is some hundred times the error: where a string has no tension at an end, of
         `ModalDamping`, on a resonance that takes no part, and of questions too long for wider
         numbers.
+    rounding_bound : ndarray, as value
+        Bound of the relative error of rounding to first order, without wider numbers, computed when
+        it is first asked for: some hundred times the error, in about the time of the response. As
+        `rounding_error` where nothing is measured.
     mesh_error : ndarray, as value
         Relative error that the elements cause, computed when it is first asked for. Not an
         estimate: the distance to the response of the continuous spans of the same scene, and the
@@ -117,11 +121,11 @@ class FRF(Curves):
     value: Complex = field(metadata=axes("drive", "response", "frequency"))
     cost: Cost
     rounding: Lazy[RoundingOfResponse] = lazy(RoundingOfResponse)
+    rounding_bound: Lazy[Real] = lazy(np.ndarray, axes("drive", "response", "frequency"))
     mesh: Lazy[MeshOfResponse] = lazy(MeshOfResponse)
     solve_rates: Callable[[], ResponseRates] | None = field(
         default=None, repr=False, metadata=TRANSIENT
     )
-    solve_bound: Callable[[], Real] | None = field(default=None, repr=False, metadata=TRANSIENT)
     decay: float = 0.0
     stable: Flags | None = field(default=None, metadata=axes("frequency"))
 
@@ -140,22 +144,6 @@ class FRF(Curves):
             )
         return self.solve_rates()
 
-    @computed
-    def rounding_bound(self) -> Real:
-        """Bound of the relative error of rounding to first order, without wider numbers, as value.
-
-        Some hundred times the error, and known in about the time of the response; what has no other
-        error than that, as an answer from a file, gives `rounding_error`.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> frf = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile().frf(90.0, drive=("z", 0.4))
-        >>> bool(frf.rounding_error < frf.rounding_bound < 1e-12)
-        True
-        """
-        return self.rounding_error if self.solve_bound is None else self.solve_bound()
-
     def to(self, quantity: str) -> Self:
         """Return the same response as another quantity; see `Curves.to`."""
         found = super().to(quantity)
@@ -165,7 +153,12 @@ class FRF(Curves):
             limit = self.rounding_limit * times
             return RoundingOfResponse.of(found.value, limit, self.rounding_measured)
 
-        return changed(found, rounding=Late(rounding))
+        def bound() -> Real:
+            of = RoundingOfResponse.of_relative(self.value, self.rounding_bound).rounding_limit
+            with np.errstate(invalid="ignore"):
+                return relative(found.value, np.where(times == 0, 0.0, of * times))
+
+        return changed(found, rounding=Late(rounding), rounding_bound=Late(bound))
 
     def derivative(self, path: str) -> Complex:
         """Find the derivative of the response with respect to a number of the scene.

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..base import check
 from ..base.answer import Cost
 from ..base.array import Complex, Flags, Real
-from ..base.computed import Late, LateCall, computed
+from ..base.computed import Late, computed
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES
 from ..chain import tip
@@ -26,7 +26,7 @@ from ..scene.scene import Scene
 from .at_node import answers_at_nodes
 from .frf import FRF, MeshOfResponse, RoundingOfResponse
 from .frf_rate import Answered, FrequencyRates
-from .measured import measured
+from .measured import measured, surely
 from .modal_sum import Summed, modal_sum, refuse_other_damping
 from .moved_end import gathered, moves_ends
 from .question import Bound, Question, Solver, angular, workers_of
@@ -79,8 +79,8 @@ def solve_harmonic(
             factorisations=0 if solver == "sweep" else got.lines,
         ),
         mesh=found.mesh(),
-        rounding=Late(partial(found.rounding, tight)),
-        solve_bound=LateCall(found.bound),
+        rounding=Late(partial(found.rounding, solver if tight else None)),
+        rounding_bound=Late(found.bound),
         solve_rates=partial(
             FrequencyRates, model, found.omega, drives, responses, got.answered, got.value
         ),
@@ -126,10 +126,13 @@ class _Found:
         """Bound its rounding, relative."""
         return relative(self.value, self.of_value(self.got.value, self.got.bound()))
 
-    def rounding(self, tight: bool) -> RoundingOfResponse:
-        """Measure its rounding, or bound it."""
+    def rounding(self, solver: str | None) -> RoundingOfResponse:
+        """Measure the rounding of a solver, or bound it."""
         got = self.got
-        error, certain = got.error() if tight else (got.bound(), np.zeros(got.value.shape, bool))
+        if solver is None:
+            error, certain = got.bound(), np.zeros(got.value.shape, bool)
+        else:
+            error, certain = got.error(solver)
         certain = tip.gather_flags(self.whole.model, self.responses, certain)
         wrong = self.of_value(got.value, error)
         return RoundingOfResponse.of(self.value, wrong, certain[self.drive])
@@ -161,7 +164,7 @@ class Receptance(NamedTuple):
         """Bound what rounding does, as value."""
         return gathered(self.value.shape, self.bounds)
 
-    def error(self) -> tuple[Real, Flags]:
+    def error(self, solver: str) -> tuple[Real, Flags]:
         """Measure what rounding did, as value, or bound it; and where it was measured."""
         error, certain = np.zeros(self.value.shape), np.ones(self.value.shape, dtype=np.bool_)
         for (block, bound), answered in zip(self.bounds, self.answered):
@@ -172,9 +175,7 @@ class Receptance(NamedTuple):
             if found is None:
                 error[block], certain[block] = limit, False
                 continue
-            # on a resonance that takes no part wider numbers know less than the bound does
-            certain[block] = told = np.isfinite(found.error) & (found.noise <= limit)
-            error[block] = np.where(told, found.error, limit)
+            error[block], certain[block] = surely(found.error, found.noise, limit, solver=solver)
         return error, certain
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -9,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..base.array import Complex, Real
+from ..base.array import Complex, Flags, Index, Real
 from ..base.check import is_end
 from ..chain.chain import Chain
-from ..chain.compiled import EXACT
+from ..chain.compiled import EXACT, Compiled
 from ..chain.port import Point, Ports, cut, is_force, is_held, locate, moving, ports, stops
 from ..chain.wide import (
     FINE,
@@ -20,10 +21,12 @@ from ..chain.wide import (
     SPARE,
     SURE,
     Number,
+    Wide,
     as_real,
     factors_of,
     moved,
     narrow,
+    rescaled,
     wide_of,
 )
 from ..chain.witness import Loads, NodeFields, respond
@@ -66,6 +69,27 @@ def measured(question: Question, value: Complex) -> RoundingFound | None:
     return RoundingFound(error, noise)
 
 
+STILL = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]])  # Factors at 0 Hz.
+
+
+def off_by(value: Array, once: Array, noise: Array) -> Real:
+    """Return how far doubles are from wide numbers that know themselves but for some noise."""
+    with np.errstate(all="ignore"):
+        error = (1 + SPARE) * np.abs(value - once) + noise + EPS / 2 * np.abs(value)
+        return np.where(np.isfinite(error), error, np.inf).astype(float)
+
+
+def surely(error: Real, noise: Real, bound: Real, *, solver: str) -> tuple[Real, Flags]:
+    """Return what was measured where that says more than a bound, and where that is."""
+    # on a resonance that takes no part wider numbers know less than the bound does, but where they
+    # differ by more than they know, a bound that is less is wrong
+    told = np.isfinite(error) & (noise <= np.maximum(bound, error / 2))
+    if solver != "sweep":
+        # of the residuals of all rows, that of assembled solvers misses what little is left of them
+        told |= noise > bound
+    return np.where(told, error, bound), told
+
+
 def _apart(value: Complex, found: list[Array], is_ratio: bool) -> tuple[Real, Real]:
     """Return the error of a response, and what of it is the error of the wide answers."""
     with np.errstate(all="ignore"):
@@ -73,9 +97,8 @@ def _apart(value: Complex, found: list[Array], is_ratio: bool) -> tuple[Real, Re
             found = [one[:, 1:] / one[:, :1] for one in found]
         once = found[0]
         noise = SURE * np.max([np.abs(other - once) for other in found[1:]], axis=0)
-        error = (1 + SPARE) * np.abs(value - once) + noise + EPS / 2 * np.abs(value)
-        error = np.where(np.isfinite(error), error, np.inf)
-    return error.astype(float), np.where(np.isfinite(noise), noise, np.inf).astype(float)
+    error = off_by(value, once, noise)
+    return error, np.where(np.isfinite(noise), noise, np.inf).astype(float)
 
 
 def _answers(question: Question) -> list[Array] | None:
@@ -93,26 +116,88 @@ def _answers(question: Question) -> list[Array] | None:
     told = ports(plain, places, component, [(moving(p), p[1]) for p in question.responses])
     rough = 16 * EPS if any(locate(x, p[1])[1] is not None for p in points) else 0.0
     watched = np.concatenate([told.node, told.node + 1])
-    factor, local = _factors(question), inside_elements(question)
-    scales = _core.scales(plain, np.ascontiguousarray(factor.astype(np.complex128)))
-    z = 2.0 ** np.round(np.log2(scales)).astype(Number)
-    found = []
-    for seed in (None, *SEEDS):
-        own, factors, rows, part = chain, factor, [pushed, told], local
-        if seed is not None:
-            random = np.random.default_rng(seed)
-            own, factors = wide.moved(chain, seed), _moved_factors(factor, random)
-            rows = [one._replace(row=moved(one.row, rough, random)) for one in rows]
-            part = local * (1 + 4 * EPS)
-        rows = [one._replace(row=one.row.astype(Number)) for one in rows]
-        fields = respond(own, as_real(factors), z, Loads.of(rows[0]), watched)
+    local, found = inside_elements(question), []
+    still = [_stands(chain, places, component, p) for p in question.responses]
+    asked = Pushed(Loads.of(pushed), watched, rough)
+    for fields, random in _perturbed(wide, chain, _factors(question), asked):
         if fields is None:
             return None
-        answer = _read(question, x, fields, rows[1]) + part
-        still = [_stands(chain, places, component, p) for p in question.responses]
+        row: Array = told.row.astype(Number)
+        part = local
+        if random is not None:
+            row, part = moved(row, rough, random), local * (1 + 4 * EPS)
+        answer = _read(question, x, fields, told._replace(row=row)) + part
         answer[:, still] = 0
         found.append(answer)
     return found
+
+
+class Pushed(NamedTuple):
+    """What acts on a chain and what is watched."""
+
+    loads: Loads
+    watched: Index  # nodes
+    rough: float  # how far shapes between nodes are off, as all numbers of the loads
+
+
+def _perturbed(
+    wide: Wide, chain: Chain, factor: Array, asked: Pushed
+) -> Iterator[tuple[NodeFields | None, np.random.Generator | None]]:
+    """Yield what loads cause in wide numbers, then in others that are a little off."""
+    scales = _core.scales(narrow(chain), np.ascontiguousarray(factor.astype(np.complex128)))
+    unit: Array = 2.0 ** np.round(np.log2(scales)).astype(Number)
+    loads = asked.loads._replace(row=asked.loads.row.astype(Number))
+    yield respond(chain, as_real(factor), unit, loads, asked.watched), None
+    for seed in SEEDS:
+        random = np.random.default_rng(seed)
+        own, off = wide.moved(chain, seed), _moved_factors(factor, random)
+        z = unit * rescaled(random, len(unit))
+        push = loads._replace(row=moved(loads.row, asked.rough, random))
+        yield respond(own, as_real(off), z, push, asked.watched), random
+
+
+class AtRest(NamedTuple):
+    """A deflection in wider numbers, each (nodes, width), and how little these know of it."""
+
+    displacement: Array
+    force: Array
+    unsure: Array
+    force_unsure: Array
+
+
+def measured_at_rest(
+    model: Compiled, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
+) -> AtRest | None:
+    """Deflect a component in wider numbers; None where there are none."""
+    wide = wide_of(model)
+    if wide is None:
+        return None
+    chain, x = wide.chain.only(component).at_rest, wide.x
+    if model.element in EXACT:
+        places = [*nodes, *(at for _, at in loads), *stops(narrow(chain), x.astype(float))]
+        chain, x = cut(chain, x, places)
+    pushed = ports(narrow(chain), x.astype(float), component, loads)
+    push, amount = Loads.of(pushed), np.array(list(loads.values()))
+    push = push._replace(row=push.row @ amount[:, None])
+    right = np.searchsorted(x, nodes).clip(1, len(x) - 1)
+    near = np.where(x[right] - nodes < nodes - x[right - 1], right, right - 1)
+    found = []
+    for fields, _ in _perturbed(wide, chain, STILL.astype(Number), Pushed(push, near, 0.0)):
+        if fields is None:
+            return None
+        at = np.searchsorted(fields.node, near)
+        # what the surroundings put on a node is what the rope on both sides does not
+        force = fields.left[0, at, :, 0] - fields.right[0, at, :, 0]
+        found.append((fields.u[0, at, :, 0] * (chain.held[chain.term_of[near]] == 0), force))
+    (u, force), *others = found
+    with np.errstate(invalid="ignore"):
+        noise = [SURE * np.max([np.abs(o[k] - found[0][k]) for o in others], 0) for k in range(2)]
+    if model.element == "continuous":
+        # a node is where its double is but for half a rounding
+        noise[0] = noise[0] + EPS * np.abs(
+            nodes[:, None] * np.gradient(u.astype(float), nodes, axis=0)
+        )
+    return AtRest(u, force, *noise)
 
 
 def _moved_factors(factor: Array, random: np.random.Generator) -> Array:

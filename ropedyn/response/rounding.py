@@ -103,6 +103,14 @@ def bound_of(chain: Chain, factor: Complex, drives: Ports, responses: Ports) -> 
     return np.where(np.isfinite(energy), EPS * chain.section_loss * energy, np.inf)
 
 
+def bound_of_structures(chain: Chain, factor: Complex, drives: Ports, responses: Ports) -> Real:
+    """Bound what rounding of structures alone does, near frequencies of their own much."""
+    stations = stations_of(chain, both(drives, responses))
+    u, _ = _fields(chain, stations, factor)
+    energy = OF_NODES * _of_structures(chain, stations.node, factor, u, len(drives.node))
+    return np.where(np.isfinite(energy), EPS * energy, np.inf)
+
+
 def _energies(moved: Real, pulled: Real, drives: slice, responses: slice) -> Real:
     """Return sizes of what the fields of drives and responses do to each other at stations."""
     both_of = moved[responses] + pulled[responses]

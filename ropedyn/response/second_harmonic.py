@@ -170,6 +170,7 @@ def solve_second(
         frequency=f,
         value=value,
         rounding=RoundingOfResponse.of_relative(value, error),
+        rounding_bound=error,
         cost=Cost(solver, len(model.x) - 1, model.size, sweeps=4 * len(f)),
         mesh=MeshOfResponse(np.zeros(value.shape)),
     )

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..base.array import Complex, Real
 from ..base.errors import SceneError, SolveError
+from ..chain.chain import Chain
 from ..chain.compiled import EXACT, MOST_STEPS
 from ..chain.port import Point, Ports, is_force, is_held, local, moving, ports
 from ..chain.reaction import at_start, first_left_end, tellers
@@ -20,7 +21,7 @@ from ..scene import damping
 from .bands import bands, between, is_many
 from .closed import closed_lines
 from .question import Bound, Question, angular
-from .rounding import EPS, bound_of
+from .rounding import EPS, bound_of, bound_of_structures
 
 NODES = 40  # Of a band: pieces end below 0.76 of their resonance, the error falls by 2.9 with each.
 LANES = 16  # Frequencies that the sweep solves side by side.
@@ -39,7 +40,7 @@ def _sweep(question: Question) -> tuple[Complex, Bound]:
         value, left = found.value[0], ~found.certain[0]
         if left.any():
             value[..., left] = _walk(question.at(np.flatnonzero(left)))
-    return value, partial(_bound, question, value)
+    return value, lambda: _bound(question, bound_of) + _last(question, value)
 
 
 def _walk(question: Question) -> Complex:
@@ -72,22 +73,34 @@ def _between(question: Question) -> tuple[Complex, Real, Real]:
     return factor, _core.sweep_between(question.walked[0], factor), weight
 
 
-def _bound(question: Question, value: Complex) -> Real:
-    """Bound what rounding does to what was swept."""
+def _last(question: Question, value: Complex) -> Real:
+    """Return what the last two roundings of a response may be."""
+    return 2 * EPS * (np.abs(value) + np.abs(inside_elements(question)))
+
+
+def _assembled(question: Question, error: Real) -> Bound:
+    """Return the bound of an assembled solver, which leaves out what rounds in structures."""
+    if question.walked[0].attached_kind is None:
+        return lambda: error
+    return lambda: error + _bound(question, bound_of_structures)
+
+
+def _bound(question: Question, bounded: Callable[[Chain, Complex, Ports, Ports], Real]) -> Real:
+    """Bound what rounding does to motion and internal forces, by their fields."""
     chain, _ = question.walked
     pushed, watched, reactions = _ports(question)
     loads = len(pushed.node) + len(watched.node)
 
     def solve(part: slice) -> tuple[Real]:
         factor = np.ascontiguousarray(question.factor[:, part])
-        return (bound_of(chain, factor, pushed, watched),)
+        return (bounded(chain, factor, pushed, watched),)
 
     size, count = loads**2 * chain.first.size * len(question.component), len(question.frequency)
     (error,) = in_slices(solve, count, size, BOUND_SLICE, question.workers)
     if reactions:
         error = _reacting(question, error, sign=1.0)
     _hold(question, error)
-    return error + 2 * EPS * (np.abs(value) + np.abs(inside_elements(question)))
+    return error
 
 
 def _band(question: Question) -> tuple[Complex, Bound]:
@@ -95,7 +108,7 @@ def _band(question: Question) -> tuple[Complex, Bound]:
     value, error = _unassembled(
         question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE, lanes=1
     )
-    return value, lambda: error
+    return value, _assembled(question, error)
 
 
 def _ports(question: Question) -> tuple[Ports, Ports, bool]:
@@ -221,7 +234,7 @@ def _lapack(question: Question) -> tuple[Complex, Bound]:
     value = np.ascontiguousarray(value.transpose(1, 2, 0))
     error = np.ascontiguousarray(rounding.transpose(1, 2, 0))
     value += inside_elements(question)
-    return value, lambda: error
+    return value, _assembled(question, error)
 
 
 def inside_elements(question: Question) -> Complex:

@@ -135,12 +135,19 @@ def grade(
         return Grade(station, *np.full((2, spans), tension.mean))
     local, which = ropes(rope, stretches(parts), station)
     density = np.array([one.linear_density for one in local])[which]
-    stands, mass = standing(parts), np.zeros(spans + 1)
+    return graded(station, density, along, tension=tension, parts=parts)
+
+
+def graded(
+    station: Any, density: Any, along: Any, *, tension: Tension, parts: Sequence[Part | Stretch]
+) -> Grade:
+    """Return the tension between stations, of any kind of number, by the pull per mass."""
+    stands, mass = standing(parts), np.zeros_like(station)
     np.add.at(mass, nearest(station, places(stands)), [getattr(p, "mass", 0.0) for p in stands])
     rise = along * density * np.diff(station)
     left = np.cumsum(along * mass[:-1] + np.append(0.0, rise[:-1]))
     own = Grade(station, left, left + rise)
-    missing = tension.mean - own.at(place_of(tension, rope.length))
+    missing = tension.mean - own.at(place_of(tension, station[-1]))
     ends = np.stack([left, left + rise]) + missing
     return Grade(station, *np.where(np.abs(ends) <= ROUNDING * np.abs(ends).max(), 0.0, ends))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -94,6 +94,7 @@ def solve_frf(
     power = (2j * math.pi * f + decay) ** QUANTITIES[quantity]
     value = (receptance * power)[answered]
 
+    @cache
     def rounding() -> RoundingOfResponse:
         limit = (asked.rounding() * np.abs(power))[answered]
         return RoundingOfResponse.of(value, limit)
@@ -121,6 +122,7 @@ def solve_frf(
             factorisations=len(f) * len(asked.components),
         ),
         rounding=Late(rounding),
+        rounding_bound=Late(lambda: rounding().rounding_error),
         mesh=mesh,
         solve_rates=_refuse_rates,
         decay=decay,

@@ -64,7 +64,6 @@ def solve_static(
         limits = np.zeros((2, *displacement.shape))
         for one in solved:
             limits[:, :, one.own] = one.rounding()
-        limits.setflags(write=False)
         return limits[0][:, own], limits[1][:, own]
 
     return Deflection(
@@ -78,6 +77,7 @@ def solve_static(
             method_of(scene), len(rope.length), rope.unknowns, sweeps=1, factorisations=len(solved)
         ),
         rounding_error=Late(lambda: rounding()[0]),
+        rounding_bound=Late(lambda: rounding()[0]),
         force_rounding_error=Late(lambda: rounding()[1]),
         mesh_error=Late(mesh),
     )
@@ -168,9 +168,7 @@ def _under(rope: SpaceRope, loads: dict[Point, float]) -> list[LoadedPart]:
 
 
 def _same(shape: tuple[int, ...], value: float) -> Real:
-    error = np.full(shape, value)
-    error.setflags(write=False)
-    return error
+    return np.full(shape, value)
 
 
 def _solved(system: Assembly, right: Real) -> LoadedFields:

@@ -71,6 +71,13 @@ def test_a_part_is_computed_once_and_only_when_it_is_read():
     assert count.times == 1
 
 
+def test_an_array_that_is_computed_cannot_be_changed():
+    # nor can another who reads it see what one reader has made of it
+    outer = Outer(1.0, inner=Counted())
+    with pytest.raises(ValueError, match="read-only"):
+        outer.twice[0] = 7.0
+
+
 def test_a_part_that_is_given_is_not_computed():
     inner = made_inner()
     assert Outer(1.0, inner=inner).inner is inner

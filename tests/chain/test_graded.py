@@ -391,3 +391,115 @@ def test_random_ropes_cut_into_elements_are_the_same_ropes():
     assert over <= 1
     assert apart < 1e-12
     assert bare == 0
+
+
+# rounding -----------------------------------------------------------------------------------------
+
+FEW, MANY = 8, 2_000
+
+
+def transition(rates, slope, length, pieces):
+    """(u, f) at the right end per (u, f) at the left one of y' = (A(a) + s B) y, by Taylor.
+
+    With `rates` A at the left end of each piece, and of strings the share g of T'/T: there
+    (n + 1) z_n+1 = F_n/T - n g z_n.
+    """
+    whole, step = None, length / pieces
+    for A, g in rates:
+        last, Y = mpmath.zeros(A.rows), mpmath.eye(A.rows)
+        total = Y.copy()
+        for n in range(64):
+            more = step * (A * Y) + step**2 * (slope * last)
+            more[0, :] -= n * g * step * Y[0, :]
+            last, Y = Y, more / (n + 1)
+            total += Y
+        whole = total if whole is None else total * whole
+    return whole
+
+
+def clamped_receptance(scene, f, at):
+    """z at a place per force there of a rope that both ends hold, in 40 digits."""
+    rope, omega = scene.rope, 2 * mpmath.pi * mpf(f)
+    mu, L, B = mpf(rope.linear_density), mpf(rope.length), rope.bending_stiffness
+    T1 = mu * mpf(scene.gravity.g) * mpmath.sin(mpf(scene.gravity.inclination))
+    # powers of a string's series fall as those of what its tension grows by in a piece
+    T0, q, parts, pieces = mpf(scene.tension.mean), -mu * omega**2, [], 24 if B is None else 6
+    for start, stop in ((mpf(0), mpf(at)), (mpf(at), L)):
+        rates = []
+        for k in range(pieces):
+            T = T0 + T1 * (start + (stop - start) * k / pieces)
+            if B is None:
+                rates.append((mpmath.matrix([[0, 1 / T], [q, 0]]), T1 / T))
+                continue
+            A = mpmath.matrix([[0, 1, 0, 0], [0, 0, 0, 1 / mpf(B)], [q, 0, 0, 0], [0, T, -1, 0]])
+            rates.append((A, mpf(0)))
+        slope = mpmath.zeros(rates[0][0].rows)
+        if B is not None:
+            slope[3, 1] = T1
+        parts.append(transition(rates, slope, stop - start, pieces))
+    w = parts[0].rows // 2
+    uf, ff = parts[0][:w, w:], parts[0][w:, w:]
+    uu, over = parts[1][:w, :w], parts[1][:w, w:]
+    pushed = mpmath.lu_solve(uu * uf + over * ff, over[:, 0])
+    return (uf * pushed)[0]
+
+
+def beads_receptance(scene, f, count, node):
+    """The same of a string of equal elements, each with the tension at its middle."""
+    rope, omega = scene.rope, 2 * mpmath.pi * mpf(f)
+    mu, length = mpf(rope.linear_density), mpf(rope.length) / count
+    T1 = mu * mpf(scene.gravity.g) * mpmath.sin(mpf(scene.gravity.inclination))
+    K = [(mpf(scene.tension.mean) + T1 * length * (k + mpf(0.5))) / length for k in range(count)]
+
+    def reached(K):
+        stiff = K[0]
+        for k in K[1:]:
+            stiff = k - k**2 / (stiff + k - mu * length * omega**2)
+        return stiff
+
+    # the stiffness of both sides at the node
+    return 1 / (reached(K[:node]) + reached(K[node:][::-1]) - mu * length * omega**2)
+
+
+def graded_error(seed):
+    """Error, `rounding_error` and bound of a random line, relative."""
+    random = np.random.default_rng([seed, 22])
+    length, mu = random.uniform(1.0, 300.0), random.uniform(0.1, 8.0)
+    steep = float(random.choice([-1, 1])) * random.uniform(0.05, math.pi / 2)
+    least = mu * G * length * math.sin(steep)
+    tension = rd.Tension(abs(least) * 10 ** random.uniform(0.1, 2.0), at="start")
+    bends = random.random() < 0.5
+    B = tension.mean * length**2 * 10 ** -random.uniform(0.0, 3.0) if bends else None
+    rope = rd.Rope(length, mu, bending_stiffness=B)
+    scene = rd.Scene(rope, tension=tension, gravity=rd.Gravity(G, inclination=steep))
+    beads = not bends and random.random() < 0.5
+    model = scene.compile(elements=10) if beads else scene.compile()
+    f = float(random.choice(model.modes(4).frequency))
+    f *= 1 + 10 ** -random.uniform(0.5, 12.0) * float(random.choice([-1, 1]))
+    node = int(random.integers(1, 10))
+    at = model.x[node] if beads else length * random.uniform(0.05, 0.95)
+    frf = model.frf(f, drive=("z", at))
+    with mpmath.workdps(40):
+        h = beads_receptance(scene, f, 10, node) if beads else clamped_receptance(scene, f, at)
+        error = float(abs(mpf(float(frf.value[0, 0].real)) / h - 1))
+    return error, frf.rounding_error[0, 0], frf.rounding_bound[0, 0]
+
+
+@pytest.mark.parametrize(
+    "seeds",
+    [
+        pytest.param(range(FEW), id="few"),
+        pytest.param(range(MANY), id="many", marks=pytest.mark.slow),
+    ],
+)
+@pytest.mark.claim(
+    "rounding_error of an FRF where the tension grows along the rope over the true error, median "
+    "of random lines, none of which is beyond it",
+    reference="Taylor series and chains of springs, mpmath, 40 digits",
+    accepted=10.0,
+)
+def test_rounding_error_bounds_responses_under_own_weight_and_is_no_useless_bound(seeds, claim):
+    error, estimate, bound = np.array([graded_error(seed) for seed in seeds]).T
+    assert (error <= estimate).all()
+    assert (error <= bound).all()
+    claim(np.median(estimate / np.maximum(error, 2.0**-53)))

@@ -621,3 +621,53 @@ def test_answer_is_read_saved_and_drawn(tmp_path):
 def test_bad_questions_are_refused(error, text, arguments):
     with pytest.raises(error, match=text):
         string().compile().modes(**arguments)
+
+
+# --- rounding -------------------------------------------------------------------------------------
+
+
+def string_rates(tension):
+    """Eight omega of a string of 2 m and 0.1 kg/m."""
+    first = mpmath.pi / 2 * mpmath.sqrt(tension / mpmath.mpf(0.1))
+    return [n * first for n in range(1, 9)]
+
+
+def hertz_beside(modes, rates):
+    """Errors of frequencies and decay rates/2 pi over `rounding_error`, against exact rates."""
+    for s, mine, decay, error in zip(
+        rates, modes.frequency, modes.decay_rate, modes.rounding_error, strict=True
+    ):
+        off = [mpmath.mpf(mine) - s.imag / (2 * mpmath.pi)]
+        off.append((mpmath.mpf(decay) + s.real) / (2 * mpmath.pi))
+        yield float(max(map(abs, off)) / error)
+
+
+def test_frequencies_in_hertz_are_right_to_their_rounding_error():
+    # the division by 2 pi rounds too, which is much of the error of such a string
+    random = np.random.default_rng(900_000)
+    with mpmath.workdps(40):
+        for _ in range(20):
+            tension, drag = random.uniform(100.0, 1000.0), random.uniform(0.1, 3.0)
+            scene = rd.Scene(rd.Rope(2.0, 0.1), tension=tension, damping=rd.ViscousDamping(drag))
+            modes = scene.compile().modes(8, damped=True)
+            half = mpmath.mpf(drag) / (2 * mpmath.mpf(0.1))
+            omega = [
+                n * mpmath.pi / 2 * mpmath.sqrt(tension / mpmath.mpf(0.1)) for n in range(1, 9)
+            ]
+            rates = [mpmath.mpc(-half, mpmath.sqrt(w * w - half * half)) for w in omega]
+            assert max(hertz_beside(modes, rates)) <= 1
+
+
+@pytest.mark.parametrize("short", [1e-3, 1e-8, 1e-13])
+def test_modal_damping_just_short_of_critical_keeps_its_digits(short):
+    # 1 - ratio^2 is known to all digits, however little is left of it
+    ratio = 1 - short
+    scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0, damping=rd.ModalDamping(ratio))
+    modes = scene.compile().modes(8, damped=True)
+    with mpmath.workdps(40):
+        root = mpmath.sqrt(1 - mpmath.mpf(ratio) ** 2)
+        rates = [w * mpmath.mpc(-ratio, root) for w in string_rates(1000.0)]
+        assert max(hertz_beside(modes, rates)) <= 1
+        # 2.8e-10 where ratio^2 was rounded, at 1e-8
+        for s, mine in zip(rates, modes.frequency):
+            assert float(abs(mine * 2 * mpmath.pi / s.imag - 1)) < 4 * EPS

@@ -24,7 +24,7 @@ from ...scene.damping import factors as damping_factors
 from ...scene.damping import having
 from ..eigen import check_asked
 from ..free_motion import MeshOfModes, Vectors
-from ..measured import SoughtRoots, measured
+from ..measured import HERTZ, SoughtRoots, measured
 from ..spectrum import lowest
 from ..vectors import UNSEEN, fractions, largest, points_for, within
 from .attached_energy import AttachedEnergy
@@ -270,9 +270,7 @@ def _rounding(model: Compiled, answer: DampedRates) -> Real:
         )
         told = measured(model, component, asked)
         found[mine] = np.where(np.isnan(told), answer.error[mine], told)
-    found /= 2 * math.pi
-    found.setflags(write=False)
-    return found
+    return (found + HERTZ * np.abs(answer.value)) / (2 * math.pi)
 
 
 def _mesh(model: Compiled, answer: DampedRates) -> MeshOfModes:

@@ -17,6 +17,9 @@ from ..free_motion import MeshOfModes, Vectors
 from ..modes import Modes
 from .damped_modes import DampedModes
 
+EPS = float(np.finfo(float).eps)
+OF_RATE = 3.0  # Roundings from a frequency and a damping ratio to a rate.
+
 
 def solve_modal(
     model: Compiled, number: int | None, *, below: float | None, points: int | None
@@ -59,7 +62,8 @@ def solve_modal(
 def _answer(
     undamped: Modes, omega: Real, ratio: Real, number: int | None, limit: float
 ) -> DampedModes:
-    root: Complex = np.sqrt(np.asarray(ratio**2 - 1, dtype=np.complex128))
+    # near critical damping 1 - ratio^2 would lose the digits that ratio has
+    root: Complex = np.sqrt(np.asarray((ratio - 1) * (ratio + 1), dtype=np.complex128))
     # of an overdamped mode the slow rate as the product over the fast one
     fast = -omega * (ratio + root)
     slow = np.where(ratio < 1, fast.conj(), -omega / (ratio + root))
@@ -76,7 +80,7 @@ def _answer(
         )
     value, mode = value[order], mode[order]
     size = np.maximum(omega, undamped.growth)[mode]
-    # the frequency is all that is not exact
+    # the frequency is all that is not exact, but for a few roundings
     scale = np.divide(np.abs(value), size, out=np.ones_like(size), where=size > 0)
     searched = limit if number is None else float(np.abs(value[-1]))
     return DampedModes(
@@ -85,7 +89,7 @@ def _answer(
         searched=searched / (2 * math.pi),
         x=undamped.x,
         eigenvalue=value,
-        rounding_error=partial(_rounding, undamped, mode, scale),
+        rounding_error=partial(_rounding, undamped, value, mode, scale),
         rounding_bound=undamped.rounding_bound[mode] * scale,
         plane=undamped.plane[mode],
         cost=replace(undamped.cost),
@@ -106,10 +110,9 @@ def _vectors(undamped: Modes, mode: Index, value: Complex, decay: Real) -> Vecto
     )
 
 
-def _rounding(undamped: Modes, mode: Index, scale: Real) -> Real:
-    error = undamped.rounding_error[mode] * scale
-    error.setflags(write=False)
-    return error
+def _rounding(undamped: Modes, value: Complex, mode: Index, scale: Real) -> Real:
+    few = OF_RATE * EPS * np.abs(value) / (2 * math.pi)
+    return np.asarray(undamped.rounding_error[mode] * scale + few)
 
 
 def _mesh(undamped: Modes, mode: Index, scale: Real) -> MeshOfModes:

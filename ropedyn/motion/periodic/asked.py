@@ -94,6 +94,7 @@ class SteppedSine:
             frequency=frequency,
             value=value,
             rounding=RoundingOfResponse.of_relative(value, error),
+            rounding_bound=error,
             cost=cost,
             mesh=mesh,
             stable=stable,

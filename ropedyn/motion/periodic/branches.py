@@ -105,6 +105,7 @@ class Branches(Answer):
             frequency=self.frequency[part],
             value=value,
             rounding=RoundingOfResponse.of_relative(value, self.rounding_error[:, part]),
+            rounding_bound=self.rounding_error[:, part],
             cost=self.cost,
             mesh=MeshOfResponse(self.mesh_error[:, part]),
             stable=self.stable[part],

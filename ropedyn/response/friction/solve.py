@@ -154,13 +154,15 @@ def solve_rubbing(
     power = (2j * np.pi * f) ** QUANTITIES[quantity]
     value, other = np.array(fine.value).T * power, np.array(coarse.value).T * power
     error = np.abs(value - other) + np.array(third) * np.abs(value)
+    rounding = RoundingOfResponse.of(value, error)
     return FrictionResponse(
         (asked.drive,),
         asked.responses,
         quantity=quantity,
         frequency=f,
         value=value,
-        rounding=RoundingOfResponse.of(value, error),
+        rounding=rounding,
+        rounding_bound=rounding.rounding_error,
         mesh=MeshOfResponse(np.zeros(value.shape)),
         cost=Cost("friction", len(asked.linear.x) - 1, 2 * (len(asked.x) - 1), sweeps=4 * len(f)),
         drive_amplitude=asked.amplitude,

@@ -138,7 +138,7 @@ def _static(model: Model, ask: Ask) -> Numbers:
     static = model.static({(coordinate, x): 1.0}, unstable=ask.get("unstable", False))
     at = np.abs(static.x - x).argmin(), static.coordinates.index(coordinate)
     if len(model.x) <= 1000:
-        bound = static.rounding_error[at][None]
+        bound = static.rounding_bound[at][None]
     else:  # the bound at every node takes longer than the answer
         still = model.frf(0.0, drive=(coordinate, x))
         bound = still.rounding_bound[0] * np.abs(still.value[0])
