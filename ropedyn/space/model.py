@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NoReturn
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base import check
@@ -535,17 +536,29 @@ class SpaceModel(Frozen):
         return solve_stepped(self, frequency, progress=progress, **asked)
 
 
+MOST_CUTS = 10_000
+"""Into so many parts a rope is cut at most."""
+
+
 def _only_sweep(scene: Scene, solver: Any) -> None:
     if solver != "sweep":
         raise SceneError(f'solver must be "sweep" for {in_space(scene)}, got {solver!r}')
 
 
-def compile_space(scene: Scene, **how: Any) -> SpaceModel:
+def compile_space(
+    scene: Scene, *, elements: int | None = None, element: str | None = None, **how: Any
+) -> SpaceModel:
     """Compile a scene with a rope on an axis; see `Scene.compile`."""
-    for name, value in how.items():
-        if value is not None and not (name == "element" and value == "continuous"):
+    chain = {"elements": elements, "element": element} if element != "continuous" else {}
+    for name, value in (how | chain).items():
+        if value is not None:
             raise SceneError(
                 f"{name} must be left out for {in_space(scene)}, whose pieces are exact, "
                 f"got {check.shown(value)}"
             )
-    return SpaceModel(scene, rope_of_scene(scene))
+    rope = rope_of_scene(scene)
+    if elements is not None:
+        count = check.count(elements, "elements", most=MOST_CUTS)
+        places = np.linspace(0.0, rope.x[-1], count + 1)[1:-1]
+        rope, _ = rope.cut(places, check.NEAR * rope.x[-1])
+    return SpaceModel(scene, rope)

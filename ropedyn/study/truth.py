@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..ask import AnyQuestion
 from ..base.array import Flags, Real
-from ..base.errors import SolveError
+from ..base.errors import SceneError, SolveError
 from ..scene.scene import Scene
 from .way import Way, answered, ask_once
 
@@ -72,10 +72,17 @@ class Truth:
         return found
 
     def _sensible(self, kind: str, solver: str) -> Iterator[int]:
-        """Return powers of two from 8, or from the number of spans, that are not too slow."""
+        """Return powers of two from 8, or from the number of spans, that are not too slow.
+
+        Of chains that there are none of the first alone, whose row says why.
+        """
         first = max(FEWEST, (self.spans - 1).bit_length())
         for power in range(first, max(MOST, first + 3) + 1):
-            model = self.scene.compile(elements=2**power, element=kind)
+            try:
+                model = self.scene.compile(elements=2**power, element=kind)
+            except SceneError:
+                yield 2**power
+                return
             if power >= first + ALWAYS and self.question.work(model, solver) > LONGEST:
                 return
             yield 2**power
