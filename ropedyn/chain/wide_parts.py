@@ -205,6 +205,20 @@ def pieces_of(f: Frame, e: int, patient: bool) -> list[Triple]:
     return [piece]
 
 
+def graded_count(f: Frame, e: int) -> int:
+    """Return into how many pieces an element is cut along which the tension grows."""
+    chain = f.chain
+    assert chain.rise is not None
+    rise, mean = float(abs(chain.rise[e])), float(abs(chain.tension[e]))
+    if rise == 0:
+        return 1
+    strings = any(f.at(a) >= 0 and f.at(b) < 0 for a, b in TRANSVERSE)
+    change = float((sizes(rate_matrix(f, e)).sum(axis=2).max() * chain.length[e]).real)
+    change = (change + rise / mean) / REACH
+    change = max(change, rise / (mean - rise / 2) / GROWS if strings else 0.0)
+    return int(2 ** max(0, int(np.ceil(np.log2(max(change, 1e-300))))))
+
+
 def graded_pieces(f: Frame, e: int, patient: bool) -> list[Triple]:
     """Return the pieces of an element along which the tension grows."""
     chain, pull = f.chain, f.factor[TENSION][:, None, None]
@@ -212,10 +226,7 @@ def graded_pieces(f: Frame, e: int, patient: bool) -> list[Triple]:
     E, length, rise = rate_matrix(f, e), chain.length[e], chain.rise[e]
     w, mean = len(f.names), chain.tension[e]
     strings = [f.at(a) for a, b in TRANSVERSE if f.at(a) >= 0 and f.at(b) < 0]
-    least = mean - abs(rise) / 2
-    change = float((sizes(E).sum(axis=2).max() * length).real) + float(abs(rise / mean))
-    change = max(change / REACH, float(abs(rise) / least) / GROWS if strings else 0.0)
-    count = 2 ** max(0, int(np.ceil(np.log2(max(change, 1e-300)))))
+    count = graded_count(f, e)
     step, T = length / count, mean - rise / 2 + rise * np.arange(count)[:, None] / count
     # of E + s slope, and of strings T z' = F with T + s slope
     A, slope = np.repeat(E[None], count, axis=0), np.zeros_like(E)

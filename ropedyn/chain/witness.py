@@ -8,7 +8,7 @@ elements are joined, two and two, as long as nothing in them is near a resonance
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +26,7 @@ from .wide_parts import (
     Triple,
     beside_string,
     feet_at,
+    graded_count,
     hinge_rows,
     identity,
     is_calm,
@@ -39,6 +40,7 @@ from .wide_parts import (
 
 CROWDED = 4096  # Beyond so many stations all that can be joined is.
 AT_ONCE = 1 << 22  # Numbers of one elimination.
+MOST_GRADED = 128  # Pieces along which the tension grows: some tenths of a second.
 MOST_WORK = 1 << 19  # Stations times lines of one answer: some ten seconds.
 
 
@@ -162,6 +164,8 @@ def respond(
     asked = asked[asked < chain.nodes]
     order = np.argsort(np.abs(factor[INERTIA]), kind="stable")
     width, count = z.shape[0], len(order)
+    if chain.rise is not None and _graded(chain, factor[:, order[-1:]], z[:, order[-1:]]):
+        return None
     # the fastest line has the most stations
     most = len(_elimination(chain, factor[:, order[-1:]], z[:, order[-1:]], loads, asked).stations)
     if most * count > MOST_WORK:
@@ -174,6 +178,13 @@ def respond(
     back = np.argsort(order, kind="stable")
     joined = [np.concatenate([getattr(p, n) for p in parts])[back] for n in ("u", "left", "right")]
     return NodeFields(asked, *joined)
+
+
+def _graded(chain: Chain, factor: Array, z: Array) -> bool:
+    """Say whether the tension grows along more pieces than are made."""
+    frame = Frame(chain, chain.names, factor, z[:, 0])
+    pieces = accumulate(graded_count(frame, int(e)) for e in chain.element)
+    return any(total > MOST_GRADED for total in pieces)
 
 
 def _elimination(chain: Chain, factor: Array, z: Array, loads: Loads, asked: Array) -> Elimination:

@@ -292,6 +292,8 @@ class SpaceModel(Frozen):
         solver: str = "sweep",
         threads: int | None = None,
         decay: float = 0.0,
+        harmonic: int = 1,
+        amplitude: float | None = None,
     ) -> FRF:
         """Compute the frequency response to a harmonic force or moment.
 
@@ -312,6 +314,10 @@ class SpaceModel(Frozen):
             One finds it whatever is given.
         decay : float, optional
             [1/s]: the response at i omega + decay, of force and motion both times exp(-decay t).
+        harmonic : 1
+            What slopes cause at twice the frequency is not carried.
+        amplitude : float, optional
+            Of no effect: nothing here depends on it.
 
         Returns
         -------
@@ -341,6 +347,9 @@ class SpaceModel(Frozen):
         True
         """
         _only_sweep(self.scene, solver)
+        if harmonic != 1:
+            raise SceneError(f"harmonic must be 1 for {in_space(self.scene)}, got {harmonic!r}")
+        check.optional(amplitude, "amplitude", sign="positive")
         if threads is not None:
             check.count(threads, "threads", most=1024)
         asked: Any = {"drive": drive, "response": response, "quantity": quantity, "decay": decay}
