@@ -1,4 +1,4 @@
-"""Many lines and shapes where the tension grows along a rope: upright, and on its catenary.
+"""Modes, shapes and many lines of ropes that stand upright, hang on a catenary, or are curved.
 
 python benchmarks/lines.py
 """
@@ -36,12 +36,26 @@ def across(sag: float, parameter: float, bending: float | None) -> rd.Scene:
     return rd.Scene(rope, tension=tension, gravity=rd.Gravity(9.81))
 
 
+def curved(axis: rd.Axis, diameter: float) -> rd.Scene:
+    """A round steel wire, clamped at both ends."""
+    second = math.pi * diameter**4 / 64
+    rope = rd.Rope(
+        axis,
+        7850.0 * math.pi * diameter**2 / 4,
+        bending_stiffness=206e9 * second,
+        torsional_stiffness=79.2e9 * 2 * second,
+    )
+    return rd.Scene(rope, planes="both")
+
+
 SCENES = {
     "hoist rope, B = 2000 N m^2": upright(2000.0),
     "the same as a string": upright(None),
     "string, sag 0.06 L": across(0.06, 500.0, None),
     "rope, sag 0.06 L": across(0.06, 500.0, 50.0),
     "rope, sag 0.2 L": across(0.2, 1e4, 50.0),
+    "arc of 2 rad, both planes": curved(rd.Axis.arc(1.0, 2.0), 0.01),
+    "spring of ten turns": curved(rd.Axis.helix(0.005, math.radians(8.5744), 10), 0.001),
 }
 
 
@@ -72,7 +86,7 @@ def main() -> None:
     assert timing
     head = ["rope", "ten modes", "shapes of twelve", f"{COUNT} lines"]
     table = report.table(head, [row(name, scene) for name, scene in SCENES.items()])
-    text = f"""# Lines and shapes where the tension grows
+    text = f"""# Modes, shapes and lines of ropes that are graded or curved
 
 {report.machine()}.
 The least processor time of {REPEAT} calls in ms, compiling included: ten modes, the shapes of

@@ -33,6 +33,10 @@ LONGEST = (
     "test_figures_are_drawn",
 )
 """Names of tests of seconds, the longest first."""
+KNOWN_LONG = frozenset(
+    (Path(__file__).parent / "long.txt").read_text(encoding="utf-8").splitlines()
+)
+"""Tests that tests/long_tests.py has found to take more than half a second."""
 EPS = float(np.finfo(float).eps)
 LENGTH, BENDING, MASS = 1.35, 54.626, 0.13725
 """Of the beam in the reference files [m, N m^2, kg]."""
@@ -65,6 +69,12 @@ EVERYTHING = rd.Scene(
 
 def pytest_configure(config):
     config.pluginmanager.register(Recorder(), "claims")
+
+
+def pytest_itemcollected(item):
+    """Leave what is known to take long to the tests that do."""
+    if item.nodeid in KNOWN_LONG:
+        item.add_marker(pytest.mark.long)
 
 
 @pytest.hookimpl(trylast=True)
@@ -100,7 +110,7 @@ def pytest_sessionfinish(session):
     if hasattr(session.config, "workeroutput"):
         session.config.workeroutput["references"] = stored.SESSION.used
     elif stored.SESSION.used:
-        stored.write(whole=not session.config.invocation_params.args)
+        stored.write(whole=list(session.config.invocation_params.args) == stored.WHOLE)
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -59,7 +59,7 @@ void rd_dense_transpose(size_t n, size_t m, const double *A, double *B)
             B[j * n + i] = A[i * m + j];
 }
 
-RD_CLONES double rd_dense_inner(size_t n, const double *a, const double *b)
+static RD_CLONES double inner(size_t n, const double *a, const double *b)
 {
     lanes sum = {0};
     size_t k = 0;
@@ -75,4 +75,10 @@ RD_CLONES double rd_dense_inner(size_t n, const double *a, const double *b)
     for (; k < n; k++)
         all += a[k] * b[k];
     return all;
+}
+
+/* a function of several copies that others call would be a symbol of the library */
+double rd_dense_inner(size_t n, const double *a, const double *b)
+{
+    return inner(n, a, b);
 }

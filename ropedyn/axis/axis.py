@@ -519,46 +519,6 @@ class Axis:
         whole = np.concatenate([[0.0], np.cumsum([one.turned(one.length) for one in self.pieces])])
         return self._each(s, lambda k, at: whole[k] + self.pieces[k].turned(at), ())
 
-    def pull(self, s: ArrayLike) -> Real:
-        """Return the tension over weight per length of what hangs; at a joint that on its right.
-
-        Parameters
-        ----------
-        s : float or array_like
-            Arc lengths [m].
-
-        Returns
-        -------
-        ndarray, shape s.shape
-            [m].
-
-        Raises
-        ------
-        SceneError
-            If one lies beyond the ends, or the axis is none that hangs.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> axis = rd.Axis.catenary(100.0, parameter=200.0)
-        >>> print(round(float(axis.pull(0.0)), 6), axis.pull(axis.length / 2))
-        206.28262 200.0
-        """
-        return self._each(s, lambda k, at: _hanging(self.pieces[k]).pull(at), ())
-
-    @property
-    def mean_pull(self) -> float:
-        """Its mean along what hangs [m].
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> print(round(rd.Axis.catenary(100.0, parameter=200.0).mean_pull, 6))
-        202.107189
-        """
-        total = math.fsum(_hanging(one).mean_pull * one.length for one in self.pieces)
-        return total / self.length
-
     def reversed(self) -> Axis:
         """Return the same line from its other end, x and y of its frames turned round.
 
@@ -595,12 +555,6 @@ class Axis:
             here = piece == k
             found[here] = of(k, at[here] - joints[k])
         return found.reshape((*np.shape(s), *shape))
-
-
-def _hanging(piece: Piece) -> CatenaryPiece:
-    if not isinstance(piece, CatenaryPiece):
-        raise SceneError(f"the axis must be a catenary, got {piece}")
-    return piece
 
 
 KINDS = ("line", "arc", "ring", "helix", "catenary", "points")

@@ -23,6 +23,9 @@ FINE = 1e-12
 """A row is certified to such a relative error: slow modes of heavy masses lose more in closed form,
 and the walk along the chain keeps them."""
 
+MOST = 1 << 17
+"""Modes times spans of a chain, a third of a second: the walk along more looks for Ctrl-C."""
+
 
 class ClosedModes(NamedTuple):
     """Of each row its lowest modes; wrong ones may stand where a row is not certified."""
@@ -76,6 +79,8 @@ def closed_eigenvalues(chain: Chain, number: int | None, limit: float) -> tuple[
     wanted = int(form.counts(row, np.sqrt(limit))[0]) if number is None else number
     if wanted < 1:
         return None if wanted else (np.zeros(0), np.zeros(0))
+    if form.taken is None and wanted * len(spans.span) > MOST:
+        return None
     found = form.modes(row, wanted)
     if not found.certified[0]:
         return None

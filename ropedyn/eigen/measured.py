@@ -186,7 +186,11 @@ def _zeros(low: Array, high: Array, count: int) -> Array:
     one, two = (A - B).astype(complex), (A + B).astype(complex)
     if not (np.isfinite(one).all() and np.isfinite(two).all()):
         return np.full(count, np.nan)
-    return np.linalg.eigvals(np.linalg.solve(one, two)).astype(np.result_type(Number, 1j))
+    try:
+        found = np.linalg.eigvals(np.linalg.solve(one, two))
+    except np.linalg.LinAlgError:  # of a double root both ends tell the same
+        return np.full(count, np.nan)
+    return found.astype(np.result_type(Number, 1j))
 
 
 def _loads(chain: Chain, count: int) -> Loads:

@@ -33,6 +33,8 @@ from .weight import (
     grade,
     hanging,
     mean_around,
+    mean_pull,
+    pull,
     pulls,
     rubbing,
 )
@@ -145,7 +147,7 @@ class Described(Description):
         for place in places:
             check.position(float(place), "x", self.rope.length)
         if hangs := hanging(self.rope, self.gravity):
-            return np.asarray(self._hung(hangs.pull(x)))
+            return np.asarray(self._hung(pull(hangs, x)))
         if self.rope.axis is not None and (rubs := rubbing(self.rope, self.tension)):
             return np.asarray(rubs.around(self.rope.axis.turned(x) - angle_of(self.rope, rubs)))
         if self.axial_force:
@@ -164,7 +166,7 @@ class Described(Description):
         1000.0
         """
         if hangs := hanging(self.rope, self.gravity):
-            return float(self._hung(hangs.mean_pull))
+            return float(self._hung(mean_pull(hangs)))
         if self.is_graded:
             return self.grade.mean
         if self.axial_force:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..axis.axis import Axis
+from ..axis.piece import CatenaryPiece
 from ..base.array import Real
 from ..base.errors import SceneError
 from .gravity import Gravity
@@ -44,6 +45,20 @@ def hanging(rope: Rope, gravity: Gravity | None) -> Axis | None:
     if rope.axis is None or gravity is None or not gravity.own_weight:
         return None
     return rope.axis if rope.axis.hangs else None
+
+
+def pull(axis: Axis, s: Any) -> Real:
+    """Return the tension over weight per length of what hangs [m]: its curvature is c/pull^2."""
+    return np.asarray(np.sqrt(_hung(axis)[0].parameter / axis.rates(s)[..., 1]))
+
+
+def mean_pull(axis: Axis) -> float:
+    """Return its mean along the axis [m]."""
+    return math.fsum(piece.mean_pull * piece.length for piece in _hung(axis)) / axis.length
+
+
+def _hung(axis: Axis) -> list[CatenaryPiece]:
+    return [piece for piece in axis.pieces if isinstance(piece, CatenaryPiece)]
 
 
 def rubbing(rope: Rope, tension: float | Tension) -> Tension | None:

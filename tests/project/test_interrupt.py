@@ -5,6 +5,7 @@ import select
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -39,7 +40,12 @@ class Child:
         return sum(map(int, stat.rpartition(")")[2].split()[11:13])) / TICKS
 
     def told(self):
-        return self.process.stdout.readline().strip()
+        """Return the line that it says next, an empty one of what hangs."""
+        watch = threading.Timer(PATIENCE, self.process.kill)
+        watch.start()
+        said = self.process.stdout.readline().strip()
+        watch.cancel()
+        return said
 
     def interrupt(self, name):
         """Begin a call, end it when it is under way, and return what the child says of it."""

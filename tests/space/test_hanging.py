@@ -168,8 +168,11 @@ def test_forces_moved_ends_and_motion_are_those_of_the_rope_on_its_axis():
     )
     assert moves.cost.method == own.cost.method
     np.testing.assert_array_equal(moves.value, own.value)
-    released = model.transient(time, start={("z", 30.0): 5.0}, response=("z", 30.0))
-    falls = space.transient(time, start={("z", 30.0 * longer): 5.0}, response=("z", 30.0 * longer))
+    # a corner of the shape runs along the rope: the line knows it to 1.5e-3
+    slack = {"tolerance": 1e-2}
+    released = model.transient(time, start={("z", 30.0): 5.0}, response=("z", 30.0), **slack)
+    start = {("z", 30.0 * longer): 5.0}
+    falls = space.transient(time, start=start, response=("z", 30.0 * longer), **slack)
     np.testing.assert_array_equal(released.value, falls.value)
 
 

@@ -6,6 +6,7 @@ processor it had used when Ctrl-C reached it.
 
 import contextlib
 import io
+import signal
 import sys
 import tempfile
 import threading
@@ -275,5 +276,6 @@ def interrupted(name):
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
     for line in sys.stdin:
         print(interrupted(line.strip()), flush=True)

@@ -28,7 +28,9 @@ import numpy as np
 import ropedyn as rd
 
 FOLDER = Path(__file__).parent.parent / "reference" / "stored"
-COMMAND = "ROPEDYN_REFERENCES=compute .venv/bin/pytest"
+WHOLE = ["-m", "not slow"]
+"""Arguments of a run of all tests that ask, after which no value is left that none asks for."""
+COMMAND = "ROPEDYN_REFERENCES=compute .venv/bin/pytest -m 'not slow'"
 DIGITS = 50
 """Of what is kept, beyond what any comparison asks for."""
 SAME = {str: 1e-25, float: 1e-9}
