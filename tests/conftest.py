@@ -124,6 +124,12 @@ def slow(*values):
     return [pytest.param(value, marks=pytest.mark.slow) for value in values]
 
 
+def samples(few, many):
+    """Return the seeds of a small sample, and of the large one that is slow."""
+    large = pytest.param(range(many), id="many", marks=pytest.mark.slow)
+    return [pytest.param(range(few), id="few"), large]
+
+
 def long(*values):
     """Return parameters that are left to the tests that take long."""
     return [pytest.param(value, marks=pytest.mark.long) for value in values]

@@ -52,7 +52,7 @@ def solve_static(
     def mesh() -> Real:
         finer = finer_rope(scene, rope)
         if finer is None:
-            return _same(shape, 0.0)
+            return np.zeros(shape)
         other, node = finer.cut(x, near)
         there = np.zeros_like(displacement)
         for one in _under(other, along):
@@ -165,10 +165,6 @@ def _under(rope: SpaceRope, loads: dict[Point, float]) -> list[LoadedPart]:
         if right.any():
             found.append(LoadedPart(own, system, _solved(system, right)))
     return found
-
-
-def _same(shape: tuple[int, ...], value: float) -> Real:
-    return np.full(shape, value)
 
 
 def _solved(system: Assembly, right: Real) -> LoadedFields:

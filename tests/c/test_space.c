@@ -25,6 +25,18 @@ static void beam(double *phi, double *soft, double *load, double *inertia)
     }
 }
 
+/* Phi, S and q of it at the eigenvalue 3 */
+static void beam_that_moves(double _Complex *rates)
+{
+    double phi[FULL], soft[FULL], load[FULL], inertia[FULL];
+    beam(phi, soft, load, inertia);
+    for (int i = 0; i < FULL; i++) {
+        rates[i] = phi[i];
+        rates[FULL + i] = soft[i];
+        rates[2 * FULL + i] = -3 * inertia[i];
+    }
+}
+
 /* at rest D has the length as the lever of beta and gamma, G is l^3/3B, l^2/2B, l/B, and Q = 0 */
 static void test_triple_of_a_beam_at_rest(void)
 {
@@ -179,19 +191,13 @@ static void test_parts_of_what_only_seems_to_change(void)
     static double _Complex rates[FIELDS * TRIPLE], one[TRIPLE];
     static double _Complex many[8 * TRIPLE];
     static double series[NODES * FIELDS * RD_SPACE_ORDERS];
-    double phi[FULL], soft[FULL], load[FULL], inertia[FULL];
     const double flat[RD_SPACE_ORDERS] = {1};
     struct rd_workspace workspace = {0};
     int reached, whole;
-    beam(phi, soft, load, inertia);
-    for (int i = 0; i < FULL; i++) {
-        /* E = E_0 + x E_1 with E_1 = E_0/2, of which a series that takes it away is left */
-        rates[i] = phi[i];
-        rates[FULL + i] = soft[i];
-        rates[2 * FULL + i] = -3 * inertia[i];
-        for (int k = 0; k < 3; k++)
-            rates[TRIPLE + k * FULL + i] = 0.5 * rates[k * FULL + i];
-    }
+    beam_that_moves(rates);
+    /* E = E_0 + x E_1 with E_1 = E_0/2, of which a series that takes it away is left */
+    for (int i = 0; i < TRIPLE; i++)
+        rates[TRIPLE + i] = 0.5 * rates[i];
     for (int node = 0; node < NODES; node++) {
         double *at = series + node * FIELDS * RD_SPACE_ORDERS;
         at[0] = 2;
@@ -230,15 +236,9 @@ static void test_equal_parts_are_those_of_the_whole(void)
     enum { NODES = 14, HALVINGS = 4, EQUAL = 3 };
     double _Complex rates[TRIPLE], one[TRIPLE], many[EQUAL * TRIPLE];
     static double flat[NODES * RD_SPACE_ORDERS];
-    double phi[FULL], soft[FULL], load[FULL], inertia[FULL];
     struct rd_workspace workspace = {0};
     int reached, whole;
-    beam(phi, soft, load, inertia);
-    for (int i = 0; i < FULL; i++) {
-        rates[i] = phi[i];
-        rates[FULL + i] = soft[i];
-        rates[2 * FULL + i] = -3 * inertia[i];
-    }
+    beam_that_moves(rates);
     for (int node = 0; node < NODES; node++)
         flat[node * RD_SPACE_ORDERS] = 1;
     const struct rd_space_run third = {SIX, 0.25, 1, HALVINGS, 1, 1, flat};

@@ -5,6 +5,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from conftest import samples
 from mpmath import mpf
 
 import ropedyn as rd
@@ -485,13 +486,7 @@ def graded_error(seed):
     return error, frf.rounding_error[0, 0], frf.rounding_bound[0, 0]
 
 
-@pytest.mark.parametrize(
-    "seeds",
-    [
-        pytest.param(range(FEW), id="few"),
-        pytest.param(range(MANY), id="many", marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.parametrize("seeds", samples(FEW, MANY))
 @pytest.mark.claim(
     "rounding_error of an FRF where the tension grows along the rope over the true error, median "
     "of random lines, none of which is beyond it",

@@ -6,7 +6,7 @@ They are where the receptance of a point is infinite.
 import mpmath
 import numpy as np
 import pytest
-from conftest import EPS
+from conftest import EPS, samples
 from exact_chain import DIGITS, Exact
 from exact_roots import pole
 from exact_scene import places
@@ -71,13 +71,7 @@ def found_at(modes, s):
     return int(np.abs(2 * np.pi * modes.frequency - abs(s)).argmin())
 
 
-@pytest.mark.parametrize(
-    "seeds",
-    [
-        pytest.param(range(FEW), id="few"),
-        pytest.param(range(MANY), id="many", marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.parametrize("seeds", samples(FEW, MANY))
 @pytest.mark.claim(
     "rounding_error of a mode, damped or not, of chains and spans, over the true error, median of "
     "random scenes, none of which is beyond it",

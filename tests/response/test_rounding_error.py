@@ -11,7 +11,7 @@ import pickle
 import mpmath
 import numpy as np
 import pytest
-from conftest import EPS
+from conftest import EPS, samples
 from exact_chain import DIGITS, Exact, condition, omega_of, response
 from exact_span import Continuum, coupled
 from random_scene import damped, random_line, random_spans
@@ -164,13 +164,7 @@ def span_error_and_limit(seed):
     return error, frf.rounding_limit[0, 0], abs(value)
 
 
-@pytest.mark.parametrize(
-    "seeds",
-    [
-        pytest.param(range(FEW_SPANS), id="few"),
-        pytest.param(range(MANY), id="many", marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.parametrize("seeds", samples(FEW_SPANS, MANY))
 @pytest.mark.claim(
     "rounding_limit of an FRF of damped continuous spans over the true error, median of random "
     "lines, none of which is beyond it",
