@@ -14,7 +14,7 @@ import lazy_loader as _lazy_loader
 
 from .base import answer as _answer
 from .base import drawing as _drawing
-from .base import fork as _fork  # noqa: F401 - by being there
+from .base import threads as _threads  # noqa: F401 - by being there
 
 # public names stand in __init__.pyi alone, and each is imported when it is first used
 __getattr__, __dir__, __all__ = _lazy_loader.attach_stub(__name__, __file__)

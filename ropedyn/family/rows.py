@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from ..base.answer import Answer, Cost
 from ..base.array import Index, Real
 from ..base.errors import RopedynError, SceneError, SolveError
 from ..base.progress import Progress, reporter
+from ..base.threads import PATIENCE, Deferred
 
 Array = np.ndarray[Any, Any]
 
@@ -94,15 +96,16 @@ class Shared:
         for stage in stages:
             answered.append(0)
             left = []
-            for chunk, part in self._solved(stage, rest):
-                whole = len(part.at) == len(chunk)
-                for filled, some in zip(blank, part.arrays):
-                    filled[chunk if whole else chunk[part.at]] = some
-                answered[-1] += len(part.at)
-                if not whole:
-                    left.append(np.delete(chunk, [*part.at, *part.failed]))
-                    reasons |= {int(chunk[k]): why for k, why in part.failed.items()}
-                self.report((sum(answered) + len(reasons)) / len(self.rows))
+            with closing(self._solved(stage, rest)) as solved:
+                for chunk, part in solved:
+                    whole = len(part.at) == len(chunk)
+                    for filled, some in zip(blank, part.arrays):
+                        filled[chunk if whole else chunk[part.at]] = some
+                    answered[-1] += len(part.at)
+                    if not whole:
+                        left.append(np.delete(chunk, [*part.at, *part.failed]))
+                        reasons |= {int(chunk[k]): why for k, why in part.failed.items()}
+                    self.report((sum(answered) + len(reasons)) / len(self.rows))
             rest = np.sort(np.concatenate(left)) if left else rest[:0]
         return tuple((row, *reasons[row]) for row in sorted(reasons)), answered
 
@@ -113,6 +116,12 @@ class Shared:
             for chunk in chunks:
                 yield chunk, stage.solve(self.rows[chunk])
             return
+        with Deferred() as interrupt:
+            yield from self._shared(stage, chunks, threads, interrupt)
+
+    def _shared(
+        self, stage: Means, chunks: list[Index], threads: int, interrupt: Deferred
+    ) -> Generator[tuple[Index, Filled]]:
         executor = self.executor or ThreadPoolExecutor(threads)
         done: SimpleQueue[Future[Filled]] = SimpleQueue()
         pending: dict[Future[Filled], Index] = {}
@@ -122,7 +131,11 @@ class Shared:
                 pending[future] = chunk
                 future.add_done_callback(done.put)
             while pending:
-                future = done.get()
+                interrupt.let_in()
+                try:
+                    future = done.get(timeout=PATIENCE)
+                except Empty:
+                    continue
                 chunk = pending.pop(future)
                 yield chunk, self._received(future, len(chunk))
         finally:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from functools import partial
 from typing import Any
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..base.array import Complex, Real
 from ..base.errors import SceneError, SolveError
+from ..base.threads import PATIENCE, Deferred
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT, MOST_STEPS
 from ..chain.port import Point, Ports, is_force, is_held, local, moving, ports
@@ -173,12 +174,25 @@ def in_slices(
     if workers == 1 or len(parts) == 1:
         found = [solve(part) for part in parts]
     else:
-        executor = ThreadPoolExecutor(workers)
+        found = _shared(solve, parts, workers)
+    return tuple(np.concatenate(arrays, axis=-1) for arrays in zip(*found))
+
+
+def _shared(
+    solve: Callable[[slice], Sequence[NDArray[Any]]], parts: Sequence[slice], workers: int
+) -> list[Sequence[NDArray[Any]]]:
+    """Solve each part on one of several threads."""
+    with Deferred() as interrupt, ThreadPoolExecutor(workers) as executor:
         try:
-            found = list(executor.map(solve, parts))
+            left = set(each := [executor.submit(solve, part) for part in parts])
+            while left:
+                interrupt.let_in()
+                done, left = wait(left, PATIENCE, FIRST_EXCEPTION)
+                for future in done:
+                    future.result()
         finally:
             executor.shutdown(cancel_futures=True)
-    return tuple(np.concatenate(arrays, axis=-1) for arrays in zip(*found))
+    return [future.result() for future in each]
 
 
 def _hold(question: Question, value: NDArray[Any]) -> None:

@@ -1,0 +1,86 @@
+"""What forks and Ctrl-C ask for while other threads are at work.
+
+A fork waits for imports in other threads, which its child would wait for without end. CPython keeps
+a lock for each module while it is imported. A child has the locks of all threads and of the threads
+only the one that forked, and what is half imported stays so. Answers import SciPy and others when
+they are read, so a thread may be in such an import at any time.
+
+Ctrl-C is heard between two waits for threads, never inside a lock of theirs. The locks of
+`threading` are written in Python. A KeyboardInterrupt that is raised in the middle of one leaves it
+held, or released twice: its threads hang, or a RuntimeError takes the place of Ctrl-C.
+"""
+
+from __future__ import annotations
+
+# these act at forks too: imported while a fork waits they would act after it and not before
+import concurrent.futures.thread  # noqa: F401
+import os
+import signal
+import sys
+import threading
+from contextlib import suppress
+from importlib import _bootstrap, import_module
+from types import FrameType, TracebackType
+from typing import Any, Self
+
+MOST = 100  # Imports one after another; more are those of a thread that waits for this one's.
+
+
+def _imported_elsewhere() -> list[str]:
+    """Return what other threads import at this moment."""
+    locks = list(getattr(_bootstrap, "_module_locks", {}).items())
+    others = set(sys._current_frames()) - {threading.get_ident()}
+    return [name for name, lock in locks if getattr(lock(), "owner", None) in others]
+
+
+def finish_imports() -> None:
+    """Wait until no other thread imports; what this thread itself imports stays as it is."""
+    for _ in range(MOST):
+        names = _imported_elsewhere()
+        if not names:
+            return
+        for name in names:
+            # why it cannot be imported is told to the thread that began
+            with suppress(Exception):
+                import_module(name)
+
+
+os.register_at_fork(before=finish_imports)
+
+PATIENCE = 0.05  # What waits for threads looks for Ctrl-C so often [s].
+
+
+class Deferred:
+    """Keep Ctrl-C from its handler within a `with`, but where it is let in."""
+
+    def __init__(self) -> None:
+        self._handler: Any = None
+        self._came: tuple[int, FrameType | None] | None = None
+
+    def __enter__(self) -> Self:
+        # other threads never hear signals, and what is no function needs no lock
+        if threading.current_thread() is threading.main_thread():
+            handler = signal.getsignal(signal.SIGINT)
+            if callable(handler):
+                signal.signal(signal.SIGINT, self._note)
+                self._handler = handler
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._handler is not None:
+            signal.signal(signal.SIGINT, self._handler)
+            self.let_in()
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        self._came = number, frame
+
+    def let_in(self) -> None:
+        """Give the handler what has come, which may raise."""
+        came, self._came = self._came, None
+        if came is not None:
+            self._handler(*came)
