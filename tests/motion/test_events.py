@@ -276,8 +276,7 @@ def test_chaos_says_until_when_it_is_known():
     asked = {"response": ("z", 0.5), **PUSH}
     with pytest.raises(rd.SolveError, match=r"until t = 0\.0\d+ s, by .* events") as refused:
         model.transient(time, **asked)
-    history = model.transient(time, **asked, partial=True)
-    np.testing.assert_array_equal(refused.value.history.error, history.error)
+    history = refused.value.history
     assert 0.02 < history.sure_until < 0.1
     known = time <= history.sure_until
     assert np.isfinite(history.error[:, known]).all()

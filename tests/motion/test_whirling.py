@@ -85,7 +85,7 @@ def test_a_string_driven_in_one_plane_whirls():
     assert late > 100 * early
 
 
-@pytest.mark.parametrize("frequency", [[29.0, 30.0], *long(np.linspace(27.0, 31.0, 9))])
+@pytest.mark.parametrize("frequency", [[29.0, 30.0], *long(np.linspace(27.0, 31.0, 5))])
 def test_planar_motion_that_is_stable_alone_gives_way_to_the_other_plane(frequency):
     asked = {"drive": ("z", 0.5), "amplitude": 20.0, "response": [("z", 0.5)]}
     damping = rd.ViscousDamping(1.0)
