@@ -20,9 +20,11 @@ import sys
 import threading
 from contextlib import suppress
 from importlib import _bootstrap, import_module
+from queue import Empty, SimpleQueue
 from types import FrameType, TracebackType
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
+One = TypeVar("One")
 MOST = 100  # Imports one after another; more are those of a thread that waits for this one's.
 
 
@@ -84,3 +86,10 @@ class Deferred:
         came, self._came = self._came, None
         if came is not None:
             self._handler(*came)
+
+    def get(self, done: SimpleQueue[One]) -> One:
+        """Wait for what threads put there, and for Ctrl-C."""
+        while True:
+            self.let_in()
+            with suppress(Empty):
+                return done.get(timeout=PATIENCE)

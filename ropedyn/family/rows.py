@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass
-from queue import Empty, SimpleQueue
+from queue import SimpleQueue
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +16,7 @@ from ..base.answer import Answer, Cost
 from ..base.array import Index, Real
 from ..base.errors import RopedynError, SceneError, SolveError
 from ..base.progress import Progress, reporter
-from ..base.threads import PATIENCE, Deferred
+from ..base.threads import Deferred
 
 Array = np.ndarray[Any, Any]
 
@@ -131,11 +131,7 @@ class Shared:
                 pending[future] = chunk
                 future.add_done_callback(done.put)
             while pending:
-                interrupt.let_in()
-                try:
-                    future = done.get(timeout=PATIENCE)
-                except Empty:
-                    continue
+                future = interrupt.get(done)
                 chunk = pending.pop(future)
                 yield chunk, self._received(future, len(chunk))
         finally:

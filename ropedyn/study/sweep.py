@@ -20,6 +20,7 @@ from ..base.atomic import write_bytes
 from ..base.computed import waited
 from ..base.progress import Progress, reporter
 from ..base.table import Table, numbers
+from ..base.threads import Deferred
 from .archive import packed, unpacked
 from .outcome import Errand, Failure, Outcome, outcome_of
 
@@ -288,6 +289,13 @@ def _sent(
     function: Callable[[One], Any], scenes: Sequence[One], executor: Executor
 ) -> Generator[tuple[int, Outcome]]:
     """Yield numbers of scenes and their outcomes as they come back."""
+    with Deferred() as interrupt:
+        yield from _shared(function, scenes, executor, interrupt)
+
+
+def _shared(
+    function: Callable[[One], Any], scenes: Sequence[One], executor: Executor, interrupt: Deferred
+) -> Generator[tuple[int, Outcome]]:
     done: SimpleQueue[Future[list[Outcome]]] = SimpleQueue()
     pending: dict[Future[list[Outcome]], range] = {}
     todo = deque(_parts(range(len(scenes)), CHUNKS))
@@ -298,7 +306,7 @@ def _sent(
                 future = _submitted(executor, function, scenes[chunk.start : chunk.stop])
                 pending[future] = chunk
                 future.add_done_callback(done.put)
-            future = done.get()
+            future = interrupt.get(done)
             chunk = pending.pop(future)
             outcomes = _received(future, len(chunk))
             yield from zip(chunk, outcomes)

@@ -7,6 +7,7 @@ import pytest
 
 PROGRAM = '''
 import faulthandler, signal, sys, threading
+from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import ropedyn as rd
 from ropedyn.family.rows import Filled, Means, Shared
@@ -25,6 +26,11 @@ def rows():
 
     shared = Shared(np.arange(8.0), 2, None, None)
     shared.fill([np.empty(8)], [Means(solve, 2)])
+
+
+def sweep():
+    pool = pools.pop()
+    rd.sweep(abs, [1, 2, 3], executor=pool)
 
 
 def traced(call, at):
@@ -50,17 +56,21 @@ def traced(call, at):
         sys.settrace(None)
 
 
-call = {"slices": slices, "rows": rows}[sys.argv[1]]
+pools = [ThreadPoolExecutor(2) for _ in range(1000)]  # made and ended where nobody interrupts
+kept = list(pools)
+call = {"slices": slices, "rows": rows, "sweep": sweep}[sys.argv[1]]
 signal.signal(signal.SIGINT, signal.default_int_handler)
 _, most = traced(call, 0)
 ended = sum(traced(call, k)[0] for k in range(1, most // 2))
+for pool in kept:
+    pool.shutdown()
 for thread in threading.enumerate()[1:]:
     thread.join(10.0)
 print(most, ended, most // 2 - 1, threading.active_count())
 '''
 
 
-@pytest.mark.parametrize("name", ["slices", "rows"])
+@pytest.mark.parametrize("name", ["slices", "rows", "sweep"])
 def test_ctrl_c_is_heard_outside_locks(name):
     run = subprocess.run(
         [sys.executable, "-c", PROGRAM, name],
