@@ -41,6 +41,7 @@ Number = np.longdouble
 PI = Number("3.141592653589793238462643383279502884197")
 FINE = 32 * float(np.finfo(Number).eps)  # How far wide numbers are moved to see what that does.
 COARSE = 2 * float(np.finfo(float).eps)  # How far those that are known as doubles alone are.
+SLIGHT = float(np.finfo(float).eps)  # How far doubles are moved so that all rounds otherwise.
 SEEDS = (1, 2)  # Numbers are moved so many times,
 SURE = 8.0  # and what that does is taken so many times.
 SPARE = 1 / 64  # A wide value's own error is less than this part of what is measured.
@@ -80,6 +81,20 @@ def moved(array: Array, amount: float, random: np.random.Generator, square: bool
     if square:
         off = off + np.swapaxes(off, -1, -2)
     return np.asarray(array * (1 + Number(amount) * off))
+
+
+def nudged(array: Array, random: np.random.Generator) -> Array:
+    """Return doubles with relative errors, the same where numbers are the same."""
+    value, which = np.unique(array, return_inverse=True)
+    off = 1 + SLIGHT * random.uniform(-1, 1, len(value))
+    return np.asarray((value * off)[which].reshape(np.shape(array)))
+
+
+def nudged_chain(chain: Chain, seed: int) -> Chain:
+    """Return a chain of doubles with every number a little off."""
+    random = np.random.default_rng(seed)
+    names = [n for n in MOVED if getattr(chain, n) is not None]
+    return chain._replace(**{n: nudged(getattr(chain, n), random) for n in names})
 
 
 def rescaled(random: np.random.Generator, width: int) -> Array:

@@ -24,6 +24,7 @@ from ..chain.chain import Chain
 from ..chain.compiled import EXACT
 from ..chain.port import Point, Ports, cut, is_force, locate, moving, ports, stops
 from ..chain.reaction import at_start, first_left_end, tellers
+from ..chain.wide import nudged_chain
 from .moved_end import is_end, released
 from .question import Question
 
@@ -39,7 +40,6 @@ class PairSlopes(NamedTuple):
     place: Complex  # (pairs, stretches, 2, f), and of what size its terms are
     number: Complex  # (pairs, attached, 4, f)
     row: Complex  # (pairs, attached, 2, width, f)
-    error: Real  # (loads, f) of the fields, relative to their largest motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +47,7 @@ class Fields:
     """One component with its loads, cut where they stand."""
 
     question: Question
+    seed: int | None = None  # by which every number of the chain is moved a little
 
     @computed
     def cut(self) -> tuple[Chain, Real]:
@@ -63,7 +64,14 @@ class Fields:
         positions = [p[1] for p in inside]
         if model.element == "tensed":
             positions += stops(chain, model.x)
-        return cut(chain, model.x, positions)
+        if self.seed is None:
+            return cut(chain, model.x, positions)
+        if model.element == "continuous":
+            # other pieces round otherwise
+            share = np.random.default_rng(self.seed).uniform(0.2, 0.8, len(model.x) - 1)
+            positions += (model.x[:-1] + share * np.diff(model.x)).tolist()
+        chain, x = cut(chain, model.x, positions)
+        return nudged_chain(chain, self.seed), x
 
     @property
     def chain(self) -> Chain:
@@ -130,53 +138,46 @@ class Fields:
             held = np.concatenate([held, np.zeros_like(held)], axis=1)
         return held.ravel()
 
-    def slopes(self, part: slice, pair: NDArray[np.int32], *, noisy: bool) -> PairSlopes:
-        """Return those of pairs of loads at some of the lines, of noise as large as the fields."""
+    def slopes(self, part: slice) -> PairSlopes:
+        """Return those of pairs of loads at some of the lines."""
         factor = np.ascontiguousarray(self.question.factor[:, part])
-        field, error = self.at(part)
-        if noisy:
-            at_nodes = np.abs(field).reshape(len(field), len(self.x), -1, factor.shape[1])
-            turning = 1.0 - 2.0 * (np.arange(len(self.x)) % 2)[:, None, None]
-            field = (at_nodes.max(axis=1, keepdims=True) * turning).reshape(field.shape) + 0j
-            field[:, self._held] = 0.0
-        asked = (self.chain, factor, field, pair, self.slip)
-        return PairSlopes(*_core.pair_slopes(*asked), *_core.carried_pair_slopes(*asked), error)
+        asked = (self.chain, factor, self.at(part), self.pair, self.slip)
+        found = PairSlopes(*_core.pair_slopes(*asked), *_core.carried_pair_slopes(*asked))
+        # only rounding is there too, but of slopes by damping
+        for slope in found._replace(number=found.number[:, :, :2]):
+            slope.imag[..., ~self.question.is_damped[part]] = 0.0
+        return found
 
-    def at(self, part: slice) -> tuple[Complex, Real]:
-        """Return the fields at some of the lines, (loads, told, f), and errors, (loads, f)."""
+    def at(self, part: slice) -> Complex:
+        """Return the fields at some of the lines, (loads, told, f)."""
         forces = [k for k, point in enumerate(self._given) if not is_end(point)]
         factor = np.ascontiguousarray(self.question.factor[:, part])
         value = np.zeros((len(self._given), len(self._held), factor.shape[1]), dtype=np.complex128)
-        error = np.zeros((len(value), factor.shape[1]))
-        value[forces], error[forces] = self._loaded([self._given[k] for k in forces], factor, part)
+        value[forces] = self._loaded([self._given[k] for k in forces], factor, part)
         for k in (k for k in range(len(value)) if k not in forces):
-            value[k], error[k] = self._moved(self._given[k], factor, part)
+            value[k] = self._moved(self._given[k], factor, part)
         value.imag[..., ~self.question.is_damped[part]] = 0.0  # only rounding is there
-        return value, error
+        return value
 
-    def _loaded(self, given: Sequence[Point], factor: Complex, part: slice) -> tuple[Complex, Real]:
+    def _loaded(self, given: Sequence[Point], factor: Complex, part: slice) -> Complex:
         """Return the fields of forces and dislocations; what is held does not move."""
         whole = [point for point in given if not at_start(self.x, point)]
         start = tellers(self.question.component, self.x) if len(whole) < len(given) else []
         basis = list(dict.fromkeys([*whole, *start]))
         if not basis:
-            return np.zeros((0, len(self._held), factor.shape[1]), dtype=np.complex128), np.zeros(
-                (0, factor.shape[1])
-            )
-        found, wrong = self._solve(self.chain, basis, factor, part)
+            return np.zeros((0, len(self._held), factor.shape[1]), dtype=np.complex128)
+        found = self._solve(self.chain, basis, factor, part)
         found[:, self._held] = 0.0
         reaction = (
             self._reactions(found[[basis.index(p) for p in start]], factor) if start else None
         )
-        fields, errors = [], []
+        fields = []
         for point in given:
             if reaction is not None and at_start(self.x, point):
                 fields.append(reaction[self.question.component.index(moving(point))])
-                errors.append(wrong.max(axis=0))
             else:
                 fields.append(found[basis.index(point)])
-                errors.append(wrong[basis.index(point)])
-        return np.stack(fields), np.stack(errors)
+        return np.stack(fields)
 
     def _reactions(self, told: Complex, factor: Complex) -> Complex:
         """Combine what tells the forces at the left end, (width, told, f)."""
@@ -185,35 +186,24 @@ class Fields:
         value = np.einsum("kij,jnk->ink", of.E, force) - np.einsum("kij,jnk->ink", of.Q, left)
         return value + np.einsum("kij,jnk->ink", of.P, right)
 
-    def _moved(self, end: Point, factor: Complex, part: slice) -> tuple[Complex, Real]:
+    def _moved(self, end: Point, factor: Complex, part: slice) -> Complex:
         """Return the field of an end that moves by 1."""
         model, own = released(self.question.model, end)
         loose = dataclasses.replace(self.question, model=model)
         chain = dataclasses.replace(self, question=loose).chain
-        found, wrong = self._solve(chain, [own], factor, part)
-        value = found[0]
+        value = self._solve(chain, [own], factor, part)[0]
         told = len(self._held) // self.chain.nodes
         at = locate(self.x, own[1])[0] * told + self.question.component.index(own[0])
         held = self._held.copy()
         held[at] = False
         value[held] = 0.0
         moved: Complex = value / value[at]
-        return moved, 2 * wrong[0]
+        return moved
 
-    def _solve(
-        self, chain: Chain, given: Sequence[Point], factor: Complex, part: slice
-    ) -> tuple[Complex, Real]:
-        """Ask the sweep; the error is that of each load's own coordinate, where it moves most."""
-        component = self.question.component
-        pushed = ports(chain, self.x, component, given)
-        value, wrong, solved = _core.sweep(chain, factor, pushed, self._nodes)
+    def _solve(self, chain: Chain, given: Sequence[Point], factor: Complex, part: slice) -> Complex:
+        """Ask the sweep."""
+        pushed = ports(chain, self.x, self.question.component, given)
+        value, _, solved = _core.sweep(chain, factor, pushed, self._nodes)
         if solved < factor.shape[1]:
             raise self.question.resonance((part.start or 0) + solved)
-        each = len(self._held) // len(self.x)
-        error = np.zeros((len(value), len(factor[0])))
-        for k, point in enumerate(given):
-            at = component.index(moving(point))
-            size = np.abs(value[k, at::each])
-            most = size.max(axis=0)
-            np.divide(wrong[k, at::each].max(axis=0), most, out=error[k], where=most > 0)
-        return value, error
+        return np.asarray(value)

@@ -19,7 +19,6 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.array import Complex, Index, Real
 from ..base.check import NEAR
@@ -31,17 +30,20 @@ from ..chain.compile import dragged
 from ..chain.compiled import Compiled
 from ..chain.port import Point, moving
 from ..chain.rate import ENTRIES, Places, Rate, Weights, asked, rates_of
+from ..chain.wide import SLIGHT, nudged
 from ..scene import damping
 from ..scene.damping import Damping
 from .fields import Fields, PairSlopes
 from .modal_sum import ModalParts, sum_slope
 from .moved_end import is_end
 from .question import Question
+from .rounding import EPS, radians
 from .solvers import in_slices
 
 TENSION, LENGTH, SAG, INERTIA = 6, 7, 8, 9
 """Numbers of these slopes of an element, behind those of its section."""
-ROUNDINGS = 64  # Products of fields are rounded so many times.
+RUNS = 16  # Derivatives are found again so many times, of numbers that are a little off,
+DEVIATIONS = 3.0  # and the truth is no further from their mean than so many deviations of one.
 Term = tuple[Complex, Real, Any]  # slopes (pairs, .., f), how fast what they are by changes, factor
 SLICE = 1 << 19  # Numbers of the fields of one call of the core: a look for Ctrl-C between them.
 
@@ -54,18 +56,36 @@ class ComponentRates:
     fields: Fields  # of its loads
     still: Sequence[Point]  # loads that stay where they are; those on wires go with them
 
+    def nudged(self, random: np.random.Generator) -> ComponentRates:
+        """Return those of a chain, and of factors, all of whose numbers are a little off."""
+        question = self.fields.question
+        factor = nudged(question.factor, random)
+        if self.fields.chain.inertia is None:
+            off = self._lost * random.uniform(-1, 1, factor.shape[1])
+            factor[damping.INERTIA] *= 1 + off
+        question = dataclasses.replace(question, factor=factor)
+        return dataclasses.replace(self, fields=Fields(question, int(random.integers(1 << 32))))
+
+    @computed
+    def _lost(self) -> Real:
+        """How far inertia is off where equal elements all lose digits of 1 - (kl)^2, (f,)."""
+        chain, factor, first = (
+            self.fields.chain,
+            self.fields.question.factor,
+            self.fields.chain.first,
+        )
+        count = np.diff(first)
+        turn = radians(chain, first.astype(np.intp), factor).max(axis=1) / count[:, None]
+        least = turn[count > 1].min(axis=0, initial=1.0)
+        return np.asarray(SLIGHT / np.maximum(least**2, SLIGHT ** (1 / 3)))
+
     @computed
     def slopes(self) -> PairSlopes:
         """Of all pairs of fields at all lines."""
-        return self._slopes(self.fields.pair)
-
-    def _slopes(self, pair: NDArray[np.int32], *, noisy: bool = False) -> PairSlopes:
-        fields = self.fields
-        loads = len(fields.question.drives) + len(fields.question.responses)
-        size = max(2 * fields.chain.nodes * len(fields.question.component) * loads, 1)
-        question = fields.question
-        ask = partial(fields.slopes, pair=pair, noisy=noisy)
-        parts = in_slices(ask, len(question.frequency), size, SLICE, question.workers)
+        fields, question = self.fields, self.fields.question
+        loads = len(question.drives) + len(question.responses)
+        size = max(2 * fields.chain.nodes * len(question.component) * loads, 1)
+        parts = in_slices(fields.slopes, len(question.frequency), size, SLICE, question.workers)
         return PairSlopes(*parts)
 
     @computed
@@ -99,40 +119,11 @@ class ComponentRates:
 
     def receptance(self, weights: Weights, by_p: Complex) -> Complex:
         """Return dh/dp where the chain and the factors, (5, f), change, (drives, responses, f)."""
-        terms = self._terms(self.slopes, weights, by_p, 0)
-        return -self._by_pair(sum(_dot(slope, weight) * by for slope, weight, by in terms))
-
-    def error(self, weights: Weights, by_p: Complex) -> Real:
-        """Return a bound of the error of that: of products of fields, and noise beside them."""
-        drives, wrong = len(self.fields.question.drives), self.slopes.error
-        own, noise = self._size_of(False, weights, by_p), self._size_of(True, weights, by_p)
-        noise = np.maximum(own, noise)
-        size = self._by_pair(self._size(self.slopes, weights, by_p))
-        size = np.maximum(size, own[:drives, None] * own[None, drives:])
-        wrong = wrong[:drives, None] + wrong[None, drives:]
-        by_fields = wrong * noise[:drives, None] * noise[None, drives:]
-        return np.asarray(ROUNDINGS * np.finfo(float).eps * size + by_fields)
-
-    def _size_of(self, noisy: bool, weights: Weights, by_p: Complex) -> Real:
-        """Return roots of the sizes of the fields with themselves, or of noise, (loads, f)."""
-        loads = np.arange(len(self.slopes.error), dtype=np.int32)
-        slopes = self._slopes(np.stack([loads, loads], axis=1), noisy=noisy)
-        return np.sqrt(self._size(slopes, weights, by_p))
-
-    def _by_pair(self, of: Any) -> Any:
-        question = self.fields.question
-        return of.reshape(len(question.drives), len(question.responses), -1)
-
-    def _size(self, slopes: PairSlopes, weights: Weights, by_p: Complex) -> Real:
-        """Return the sum of the sizes of all terms, (pairs, f)."""
-        terms = self._terms(slopes, weights, by_p, 1)
-        parts = [_dot(np.abs(s), np.abs(weight)) * np.abs(by) for s, weight, by in terms]
-        return np.sum(parts, axis=0)
-
-    def _terms(self, slopes: PairSlopes, weights: Weights, by_p: Complex, side: int) -> list[Term]:
-        """Return what -dh/dp is the sum of; side 1 of places is their size."""
-        found = [*self._along(slopes, weights, by_p), *self._at_nodes(slopes, weights, by_p, side)]
-        return [*found, *self._on_structures(slopes, weights, by_p)]
+        slopes, question = self.slopes, self.fields.question
+        terms = [*self._along(slopes, weights, by_p), *self._at_nodes(slopes, weights, by_p)]
+        terms += self._on_structures(slopes, weights, by_p)
+        total = sum(_dot(slope, weight) * by for slope, weight, by in terms)
+        return -np.reshape(total, (len(question.drives), len(question.responses), -1))
 
     def _along(self, slopes: PairSlopes, weights: Weights, by_p: Complex) -> Iterator[Term]:
         """Yield what the elements give."""
@@ -184,16 +175,14 @@ class ComponentRates:
                     "moves there would be left of it or right of it"
                 )
 
-    def _at_nodes(
-        self, slopes: PairSlopes, weights: Weights, by_p: Complex, side: int
-    ) -> Iterator[Term]:
+    def _at_nodes(self, slopes: PairSlopes, weights: Weights, by_p: Complex) -> Iterator[Term]:
         """Yield what stands at nodes and moves there, and hinges."""
         factor, chain, model = self.fields.question.factor, self.fields.chain, self.places.model
         own, of = self._own
         square = np.ix_(of, self._kept, self._kept)
         node, place = slopes.node[:, own], weights.place[:, 0]
         self._refuse_loads_at(model.x[model.chain.first[place != 0]])
-        yield slopes.place[:, own, side], place[of], 1.0
+        yield slopes.place[:, own, 0], place[of], 1.0
         yield node, weights.node[square], factor[damping.SPRING]
         yield node, weights.mass[square], factor[damping.INERTIA]
         yield node, weights.dashpot[square], factor[damping.DASHPOT]
@@ -298,8 +287,8 @@ class FrequencyRates:
         alone = {k: float(k == name) for k in floats if isinstance(getattr(one, k), float)}
         return dataclasses.replace(one, **alone)  # type: ignore[type-var]
 
-    def receptance(self, path: str, *, bounded: bool) -> tuple[Complex, Real]:
-        """Return d(receptance)/dp and, if asked for, a bound of its error."""
+    def receptance(self, path: str, seed: int | None = None) -> Complex:
+        """Return d(receptance)/dp, with a seed that of numbers which are all a little off."""
         if self.model.chain.rise is not None:
             raise SceneError(
                 "elements must be given for derivatives of a response where the tension grows "
@@ -307,51 +296,58 @@ class FrequencyRates:
             )
         weights = asked(self.paths, path)().weights(self.places)
         own = [self._unit(*self._dampings[path])] if path in self._dampings else []
-        value, error = np.zeros_like(self.value), np.zeros(self.value.shape)
+        value, components = np.zeros_like(self.value), self.components
+        if seed is not None:
+            random = np.random.default_rng(seed)
+            off = {
+                f.name: nudged(getattr(weights, f.name), random)
+                for f in dataclasses.fields(weights)
+            }
+            weights = dataclasses.replace(weights, **off)
+            components = [component.nudged(random) for component in components]
         spread = tip.spread(self.model, self.responses)
-        for (question, parts), component in zip(self.answered, self.components):
+        for (question, parts), component in zip(self.answered, components):
             lines = component.fields.question
             by_p = (damping.factors(own, lines.omega) - damping.factors([], lines.omega)).T
             found = component.receptance(weights, by_p)
             if parts is not None:
                 found = sum_slope(parts, found, float(damping.ratios(own, 1)[0]))
-            bound = component.error(weights, by_p) if bounded and parts is None else np.inf
             d = [k for k, point in enumerate(self.drives) if moving(point) in question.component]
             r = [k for k, point in enumerate(spread) if moving(point) in question.component]
-            value[np.ix_(d, r)], error[np.ix_(d, r)] = found, bound
-        return self._at_tips(weights, own, value, error)
+            value[np.ix_(d, r)] = found
+        return self._at_tips(weights, own, value)
 
-    def _at_tips(
-        self, weights: Weights, own: Sequence[Damping], value: Complex, error: Real
-    ) -> tuple[Complex, Real]:
+    def _at_tips(self, weights: Weights, own: Sequence[Damping], value: Complex) -> Complex:
         """Take roots together to tips, t^T u/e of which both change."""
         if not any(map(tip.is_tip, self.responses)):
-            return value, error
+            return value
         omega = self.omega
         factor = np.ascontiguousarray(damping.factors(self.model.scene.dampings, omega).T)
         more = (damping.factors(own, omega) - damping.factors([], omega))[:, damping.INERTIA]
         inertia = factor[damping.INERTIA]
         lighter = np.divide(-more, inertia, out=np.zeros_like(more), where=inertia != 0)
         changed = tip.gather(self.model, self.responses, factor, value)
-        wrong = np.full(changed.shape, np.inf)
         at = 0
         for r, point in enumerate(self.responses):
             count = len(tip.tip_of(self.model, point).root) if tip.is_tip(point) else 1
-            if not tip.is_tip(point):
-                wrong[:, r] = error[:, at]
-            else:
+            if tip.is_tip(point):
                 root = self.value[:, at : at + count]
                 slope = tip.row_slope(self.model, point, factor, weights, lighter)
                 changed[:, r] += np.einsum("cf,dcf->df", slope, root)
             at += count
-        return changed, wrong
+        return changed
 
     def of(self, path: str, quantity: str) -> Complex:
         """Return the derivative of a quantity, shape (drives, responses, f)."""
-        times = QUANTITIES[quantity]
-        return self.receptance(path, bounded=False)[0] * (1j * self.omega) ** times
+        return self.receptance(path) * (1j * self.omega) ** QUANTITIES[quantity]
 
     def error(self, path: str, quantity: str) -> Real:
-        """Return a bound of the error of that, shape (drives, responses, f)."""
-        times = QUANTITIES[quantity]
-        return self.receptance(path, bounded=True)[1] * np.abs(self.omega) ** times
+        """Return the error of that, shape (drives, responses, f): see docs/theory/errors.md."""
+        value = self.receptance(path)
+        if any(parts is not None for _, parts in self.answered):
+            return np.full(value.shape, np.inf)
+        every = np.stack([self.receptance(path, seed) for seed in range(RUNS)])
+        mean = every.mean(axis=0)
+        error = np.abs(value - mean) + DEVIATIONS * every.std(axis=0) + EPS * np.abs(value)
+        error[:, list(map(tip.is_tip, self.responses))] = np.inf
+        return np.asarray(error * np.abs(self.omega) ** QUANTITIES[quantity])

@@ -24,7 +24,6 @@ class Stations(NamedTuple):
     """Where energies are looked at: ends of stretches, drives and responses."""
 
     node: Index  # (stations,)
-    length: Real  # (stations - 1,) of the rope between two [m]
     told: Ports  # motion of all, and the force to the left of all but the first
     load: Ports  # drives, then responses
     moved: Real  # (loads, stations, width) share of each coordinate in a load
@@ -59,8 +58,7 @@ def stations_of(chain: Chain, load: Ports) -> Stations:
     force[count:] = unit
     left = np.concatenate([np.minimum(node, last - 1), node[1:] - 1]).astype(np.int32)
     told = Ports(left.repeat(width), row.reshape(-1, 2, width), force.reshape(-1, width))
-    x = np.append(0.0, np.cumsum(chain.length[chain.element_of]))
-    return Stations(node, np.diff(x[node]), told, load, moved, slipped)
+    return Stations(node, told, load, moved, slipped)
 
 
 def both(one: Ports, other: Ports) -> Ports:
@@ -85,7 +83,7 @@ def bound_of(chain: Chain, factor: Complex, drives: Ports, responses: Ports) -> 
     # coordinates that scatter together round by each other: by the mean of all, or that on top
     mean = _energies(_added(moved, axis=2), _added(pulled, axis=2), d, r) / len(z)
     wave = here + pulled[d, None] * pulled[r]
-    turn = _radians(chain, stations, factor)
+    turn = radians(chain, stations.node, factor)
     wave = np.maximum(wave[:, :, 1:], wave[:, :, :-1]) * turn
     # motion at one end times force at the other: by waves F - I is rounded, however small F is
     wave += np.minimum(turn, 1.0) * _across(moved, pulled, d, r)
@@ -180,11 +178,11 @@ def _of_structures(chain: Chain, node: Index, factor: Complex, u: Complex, drive
     return _added(size, axis=1).reshape(drives, loads - drives, count)
 
 
-def _radians(chain: Chain, stations: Stations, factor: Complex) -> Real:
-    """Bound how far waves turn or fade between stations, (stations - 1, width, f)."""
+def radians(chain: Chain, node: Index, factor: Complex) -> Real:
+    """Bound how far waves turn or fade between nodes, (nodes - 1, width, f)."""
     # of B d^4 z - T d^2 z = q z: |k|^2 <= sqrt((T/2B)^2 + q/B) + |T/2B|
-    first, size = stations.node[:-1], np.abs(factor)
-    element, apart = chain.element_of[first], np.diff(stations.node)
+    first, size = node[:-1], np.abs(factor)
+    element, apart = chain.element_of[first], np.diff(node)
     load = _loads(chain, first, apart, factor)
     names = [PLANE[k] for k in chain.coordinate]
     pull = np.abs(chain.tension[element])[:, None] * size[TENSION]
@@ -197,7 +195,8 @@ def _radians(chain: Chain, stations: Stations, factor: Complex) -> Real:
             turn[:, k] = np.sqrt(np.hypot(half, np.sqrt(q * soft)) + half)
         else:
             turn[:, k] = np.sqrt(load[:, k] / pull if name == "z" else load[:, k] * soft)
-    turn *= stations.length[:, None, None]
+    x = np.append(0.0, np.cumsum(chain.length[chain.element_of]))
+    turn *= np.diff(x[node])[:, None, None]
     return turn if chain.kind == CONTINUOUS else np.minimum(turn, np.pi * apart[:, None, None])
 
 

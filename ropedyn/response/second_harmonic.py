@@ -329,9 +329,7 @@ def _fields(model: Compiled, f: Real, loads: Sequence[Point], rule: Rule) -> Fie
         question = Question(fine, component, f, factor, [loads[k] for k in here], [], 1)
         fields = Fields(question)
         at = _places(fields.x, rule.x)
-        told = fields.at(slice(None))[0].reshape(
-            len(here), len(fields.x), 2, len(component), len(f)
-        )
+        told = fields.at(slice(None)).reshape(len(here), len(fields.x), 2, len(component), len(f))
         if "x" in component:
             tension[here] = told[:, at, 1, component.index("x")]
         for own, (z, beta) in zip(slope, planes):
