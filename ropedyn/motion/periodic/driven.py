@@ -164,7 +164,7 @@ class Driven:
     def linear_motion(self, balance: HarmonicBalance, omega: float) -> Real:
         """Return the motion of the points without what is not linear."""
         H = balance.transfer.at(balance.order * omega)[:, : balance.points, -1]
-        return balance.real((H * balance.driven()[:, None]).T)
+        return balance.real(H.T * balance.driven())
 
     def hold(self, balance: HarmonicBalance | None, x: Real, omega: float) -> Real:
         """Return the largest force that holds each held point, (held,)."""

@@ -104,11 +104,11 @@ class PanelledTransfer:
         return np.asarray(value.reshape(*omega.shape, *self.shape))
 
     def with_slope(self, omega: Real) -> tuple[Complex, Complex]:
-        """Return H and dH/domega at frequencies >= 0, (f,)."""
-        panel, basis, stretch = self._basis(omega)
+        """Return H and dH/domega at frequencies >= 0."""
+        panel, basis, stretch = self._basis(omega.ravel())
         both = np.stack([basis, basis @ _rule()[2] * stretch[:, None]], axis=1)
-        value = (both @ self.series[panel]).reshape(len(omega), 2, *self.shape)
-        return value[:, 0], value[:, 1]
+        value = (both @ self.series[panel]).reshape(*omega.shape, 2, *self.shape)
+        return value[..., 0, :, :], value[..., 1, :, :]
 
     def _basis(self, omega: Real) -> tuple[Index, Real, Real]:
         """Return panels, Chebyshev's polynomials there, (f, terms), and their argument's slope."""
