@@ -120,9 +120,10 @@ def compared(seed, stops, count, unstable):
             rng.permutation(wanted)[:3].tolist()
         )
         for k in sorted(picked):
-            state = settled(driven, states[k])
-            if state is None:
+            exact = settled(driven, [states[k]])
+            if exact is None:
                 continue
+            (state,) = exact
             away, mu = multipliers(driven, state)
             if np.abs(np.abs(mu) - 1).min() < UNSURE:
                 continue

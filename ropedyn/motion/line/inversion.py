@@ -53,6 +53,7 @@ NEAR = np.array([1.0, 2.0, FAR, 2 * FAR])  # Modes beyond it are told apart by s
 GROWS = 2.0**0.25  # What grows by this with the rate has no bound
 STRONG = 1e-3  # where it is more than this part of the largest value.
 SOON = 1e-6  # What jumps is there from so much before on, over the rate far beyond all modes.
+LOST = 50.0  # Times the tolerance: an error that twice the rates rarely mend.
 REACH = 4.0  # They reach so many times as far as the forces do, at first.
 
 
@@ -65,12 +66,15 @@ def invert(run: Run, tolerance: float, kinds: list[str] | None = None) -> Moved:
         if not np.isfinite(moved.value).all():
             raise SolveError("the numbers overflow: check the units and the times")
         # rounding is asked for where nothing else is in the way
-        if (moved.shares(kinds) <= tolerance).all() or line.is_last:
+        share = moved.shares(kinds)
+        if (share <= tolerance).all() or not line.reaches(2):
             moved = line.rounded(moved)
-            if (moved.shares(kinds) <= tolerance).all() or line.is_last:
+            if (moved.shares(kinds) <= tolerance).all() or not line.reaches(2):
                 line.refuse_infinite(moved)
                 return moved
-        line = line.further()
+        # what is still but for rounding tells nothing of rates
+        worst = share[np.isfinite(share)].max(initial=0.0)
+        line = line.further(4 if worst > LOST * tolerance and line.reaches(4) else 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,19 +104,18 @@ class Line:
         every = slice(0, len(grid.s))
         return cls(run, transfer, forces, grid, transfer.at(grid.s), (every,), decay)
 
-    def further(self) -> Line:
-        """Look twice as far."""
-        grid = replace(self.grid, finer=2 * self.grid.finer)
+    def further(self, times: int) -> Line:
+        """Look so many times as far."""
+        grid = replace(self.grid, finer=times * self.grid.finer)
         more = self.transfer.at(grid.s[len(self.grid.s) :])
         parts = (*self.parts, slice(len(self.grid.s), len(grid.s)))
         value = np.concatenate([self.value, more], axis=2)
         return replace(self, grid=grid, value=value, parts=parts)
 
-    @property
-    def is_last(self) -> bool:
-        """Whether there are no rates beyond that could be looked at."""
-        lines, numbers = 2 * self.grid.lines, 2 * self.value.size
-        return lines > self.transfer.most(2 * self.grid.omega) or numbers > MOST_NUMBERS
+    def reaches(self, times: int) -> bool:
+        """Whether rates so many times as far can be looked at."""
+        lines, numbers = times * self.grid.lines, times * self.value.size
+        return numbers <= MOST_NUMBERS and lines <= self.transfer.most(times * self.grid.omega)
 
     def motion(self) -> Moved:
         """Return the motion, its error without rounding."""

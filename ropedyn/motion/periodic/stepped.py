@@ -82,11 +82,10 @@ def _linear(asked: SteppedSine, driven: Driven) -> FRF:
     solve = partial(solve_harmonic, asked.model, drive=asked.drive, response=asked.responses)
     solve = partial(solve, threads=1, tight=False)
 
-    def ask(omega: Real) -> tuple[Complex, Real]:
-        found = solve(omega / (2 * np.pi))
-        return found.value.T, known_to(found)
-
-    PanelledTransfer(ask).cover(2 * np.pi * UNDAMPED * float(f.max()))
+    PanelledTransfer(
+        lambda omega: solve(omega / (2 * np.pi)).value.T,
+        lambda omega: known_to(solve(omega / (2 * np.pi))),
+    ).cover(2 * np.pi * UNDAMPED * float(f.max()))
     found = solve(f)
     cost = Cost("sweep", found.cost.elements, found.cost.unknowns, found.cost.sweeps)
     error = found.rounding_error
