@@ -18,7 +18,7 @@ import numpy as np
 
 from . import check, extra
 from .atomic import write_bytes
-from .computed import paid_for
+from .computed import Lazy, paid_for
 from .drawing import draw
 from .errors import SceneError, SolveError
 from .reading import reading
@@ -460,9 +460,13 @@ def _rebuilt(kind: type[Any], dataset: Any) -> Any:
             start = item.name + "."
             names = [name for name in dataset.variables if name.startswith(start)]
             arguments[item.name] = {n[len(start) :]: _array(dataset[n]) for n in names}
-        elif item.name in dataset.variables or item.default is not None:
+        elif item.name in dataset.variables or not _is_optional(item):
             arguments[item.name] = _array(dataset[item.name])
     return kind(**arguments)
+
+
+def _is_optional(item: Field[Any]) -> bool:
+    return item.default is None or (isinstance(item.default, Lazy) and item.default.optional)
 
 
 def _array(variable: Any) -> np.ndarray[Any, Any]:

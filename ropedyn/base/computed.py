@@ -93,16 +93,18 @@ class Lazy(Reader[Value]):
     What the dataclass has cost, `Cost.seconds`, counts that from then on.
     """
 
-    def __init__(self, kind: type[Any]) -> None:
-        self.kind = kind
+    def __init__(self, kind: type[Any], *, optional: bool = False) -> None:
+        self.kind = (kind, type(None)) if optional else (kind,)
+        self.optional = optional
 
     def __set_name__(self, owner: type[Any], name: str) -> None:
         self.name, self.unread = name, f"_{name}"
 
     def __set__(self, thing: object, value: Value | Callable[[], Value]) -> None:
-        if isinstance(value, Lazy):
+        given = None if self.optional and isinstance(value, Lazy) else value
+        if isinstance(given, Lazy):
             raise TypeError(f"{type(thing).__name__} needs {self.name}")
-        vars(thing)[self.name if isinstance(value, self.kind) else self.unread] = value
+        vars(thing)[self.name if isinstance(given, self.kind) else self.unread] = given
 
     def read(self, thing: object) -> Value:
         """Compute it, unless it is kept."""
@@ -143,13 +145,17 @@ def _shown(value: Value) -> Value:
     return value
 
 
-def lazy(kind: type[Any], axes: dict[str, Any] | None = None) -> Any:
+def lazy(kind: type[Any], axes: dict[str, Any] | None = None, *, optional: bool = False) -> Any:
     """Declare a field that holds a dataclass of this kind: ``mesh: Lazy[Mesh] = lazy(Mesh)``.
 
-    With `axes` it holds an array, as a field of an answer with this metadata does.
+    With `axes` it holds an array, as a field of an answer with this metadata does; if it is
+    `optional` it is None where nothing is given.
     """
-    metadata = {"nested": kind} if axes is None else axes
-    return field(default=Lazy(kind), repr=axes is not None, kw_only=True, metadata=metadata)
+    metadata, default = (
+        {"nested": kind} if axes is None else axes,
+        Lazy[Any](kind, optional=optional),
+    )
+    return field(default=default, repr=axes is not None, kw_only=True, metadata=metadata)
 
 
 class Read(Reader[Value]):

@@ -106,8 +106,8 @@ class FRF(Curves):
     cost : Cost
         What it cost.
     stable : ndarray of bool, shape (f,), or None
-        Of steady motion under a stepped sine: whether it comes back to itself when it is disturbed;
-        False too where that cannot be told, as on a fold.
+        Of steady motion under a stepped sine: whether it comes back to itself when it is disturbed,
+        computed when it is first asked for; False too where that cannot be told, as on a fold.
     decay : float
         The value is the response at s = i omega + decay [1/s], 0 unless it was asked for: that of
         K + s C + s^2 M, with s and s^2 times the displacement as velocity and acceleration. A loss
@@ -127,7 +127,7 @@ class FRF(Curves):
         default=None, repr=False, metadata=TRANSIENT
     )
     decay: float = 0.0
-    stable: Flags | None = field(default=None, metadata=axes("frequency"))
+    stable: Lazy[Flags | None] = lazy(np.ndarray, axes("frequency"), optional=True)
 
     rounding_error = Read[Real]("rounding", "Bound of the relative error of rounding, as value.")
     rounding_limit = Read[Real]("rounding", "Bound of the error of rounding, as value.")

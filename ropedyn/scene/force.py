@@ -291,7 +291,7 @@ class Samples(Force):
 
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""
-        return np.interp(time, self.time, self.sample)
+        return self.sample if time is self.time else np.interp(time, self.time, self.sample)
 
     def rate(self, time: Real) -> Real:
         """Return its derivative at times [s]."""

@@ -120,9 +120,13 @@ def compared(seed, stops, count, unstable):
             rng.permutation(wanted)[:3].tolist()
         )
         for k in sorted(picked):
-            state = settled(driven, states[k])
-            if state is None:
+            try:
+                exact = settled(driven, [states[k]])
+            except rd.SolveError:  # as where a stop is hardly touched
                 continue
+            if exact is None:
+                continue
+            (state,) = exact
             away, mu = multipliers(driven, state)
             if np.abs(np.abs(mu) - 1).min() < UNSURE:
                 continue

@@ -28,20 +28,18 @@ LARGE = 4.0  # with which slow forces are followed by at most so much more than 
 def at_once(value: Complex, omega: float, slow: Complex) -> Expansion:
     """Return oscillators that do it, from values at omega LOOKS and at the least rate, slow."""
     h = _fitted(value)
-    most = LARGE * np.abs(slow)
     for slower in SLOWER:
-        fast = _oscillators(h, omega, slower)
-        still = fast.rest + (fast.a / fast.square).sum(axis=-1)
-        if (np.abs(still) <= most).all():
+        still = h[..., 0] + h[..., 1:] @ (slower ** np.arange(1, ORDER + 1) * AT_REST)
+        if (np.abs(still) <= LARGE * np.abs(slow)).all():
             break
-    return fast
+    return _oscillators(h, omega, slower)
 
 
 def _oscillators(h: Real, omega: float, slower: float) -> Expansion:
     """Return oscillators of rates from omega/slower on, from h_m/omega^m."""
     slow = omega / slower
-    ab = np.linalg.solve(_matching(), h[..., 1:, None] * slower ** np.arange(1, ORDER + 1)[:, None])
-    b, a = (np.asarray(ab[..., k::2, 0] * slow ** (k + 1), dtype=np.float64) for k in range(2))
+    ab = (h[..., 1:] * slower ** np.arange(1, ORDER + 1)) @ MATCHED.T
+    b, a = (np.asarray(ab[..., k::2] * slow ** (k + 1), dtype=np.float64) for k in range(2))
     sigma = np.asarray(slow * PAIRS.mean(axis=1), dtype=np.float64)
     square = np.asarray(slow**2 * PAIRS.prod(axis=1), dtype=np.float64)
     none, still = np.zeros((*h.shape[:2], 0)), np.zeros(h.shape[:2])
@@ -67,6 +65,12 @@ def _matching() -> Real:
     terms = (-1.0) ** m * (q ** (m + 1) - p ** (m + 1)) / (q - p)
     late = np.concatenate([np.zeros((1, len(PAIRS))), terms[:-1]])
     return np.stack([terms, late], axis=2).reshape(ORDER, -1)
+
+
+MATCHED = np.linalg.inv(_matching())
+"""From terms 1/s^m to the oscillators that have them,"""
+AT_REST = (1 / PAIRS.prod(axis=1)) @ MATCHED[1::2]
+"""and to what these do at rest."""
 
 
 def response(oscillators: Expansion, s: Complex) -> Complex:

@@ -68,10 +68,13 @@ def _of_samples(force: Samples, grid: Grid) -> Complex:
     f[:given], f[given : given + spare] = force.sample, force.sample[-1] * _taper(spare)
     spectrum = np.fft.fft(f * np.exp(-grid.a * h * np.arange(count)))
     z = grid.s * h
-    k = np.arange(len(z)) % count
-    hat = np.ones(len(z), dtype=np.complex128)
-    np.divide(np.sinh(z / 2), z / 2, out=hat, where=z != 0)
-    return np.asarray(h * (spectrum[k] * hat * hat - force.sample[0] * ramp(z)))
+    # what e^z makes comes back with the samples; z does not
+    hats = np.resize(spectrum[: len(z)] * (2 * np.sinh(z[:count] / 2)) ** 2, len(z))
+    total = np.resize(spectrum, len(z))
+    np.divide(hats, z * z, out=total, where=z != 0)
+    if force.sample[0]:
+        total -= force.sample[0] * ramp(z)
+    return np.asarray(h * total)
 
 
 def _taper(count: int) -> Real:

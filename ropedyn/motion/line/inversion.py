@@ -53,6 +53,7 @@ NEAR = np.array([1.0, 2.0, FAR, 2 * FAR])  # Modes beyond it are told apart by s
 GROWS = 2.0**0.25  # What grows by this with the rate has no bound
 STRONG = 1e-3  # where it is more than this part of the largest value.
 SOON = 1e-6  # What jumps is there from so much before on, over the rate far beyond all modes.
+LOST = 50.0  # Times the tolerance: an error that twice the rates rarely mend.
 REACH = 4.0  # They reach so many times as far as the forces do, at first.
 
 
@@ -64,13 +65,16 @@ def invert(run: Run, tolerance: float, kinds: list[str] | None = None) -> Moved:
             moved = line.motion()
         if not np.isfinite(moved.value).all():
             raise SolveError("the numbers overflow: check the units and the times")
-        is_known = (moved.shares(kinds) <= tolerance).all()
-        lines, numbers = 2 * line.grid.lines, 2 * line.value.size
-        most = line.transfer.most(2 * line.grid.omega) if not is_known else 0
-        if is_known or lines > most or numbers > MOST_NUMBERS:
-            line.refuse_infinite(moved)
-            return moved
-        line = line.further()
+        # rounding is asked for where nothing else is in the way
+        share = moved.shares(kinds)
+        if (share <= tolerance).all() or not line.reaches(2):
+            moved = line.rounded(moved)
+            if (moved.shares(kinds) <= tolerance).all() or not line.reaches(2):
+                line.refuse_infinite(moved)
+                return moved
+        # what is still but for rounding tells nothing of rates
+        worst = share[np.isfinite(share)].max(initial=0.0)
+        line = line.further(4 if worst > LOST * tolerance and line.reaches(4) else 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +86,7 @@ class Line:
     forces: tuple[Force, ...]
     grid: Grid
     value: Complex  # (drives, responses, lines + 1)
-    error: Real  # of rounding, as value
+    parts: tuple[slice, ...]  # of the lines, one after another, that were looked at together
     decay: float  # e^(-a P)
 
     @classmethod
@@ -97,39 +101,50 @@ class Line:
         least = 2 if any(force.blows for force in forces) else 1
         transfer = run.look(tuple(run.places), run.responses)
         grid = Grid.over(run.time, longer, decay, transfer.growth, omega=omega, least=least)
-        value = transfer.at(grid.s)
-        return cls(run, transfer, forces, grid, value, _rounding(transfer, grid.s, value), decay)
+        every = slice(0, len(grid.s))
+        return cls(run, transfer, forces, grid, transfer.at(grid.s), (every,), decay)
 
-    def further(self) -> Line:
-        """Look twice as far."""
-        grid = replace(self.grid, finer=2 * self.grid.finer)
-        beyond = grid.s[len(self.grid.s) :]
-        more = self.transfer.at(beyond)
-        known = zip((self.value, self.error), (more, _rounding(self.transfer, beyond, more)))
-        value, error = (np.concatenate(both, axis=2) for both in known)
-        return replace(self, grid=grid, value=value, error=error)
+    def further(self, times: int) -> Line:
+        """Look so many times as far."""
+        grid = replace(self.grid, finer=times * self.grid.finer)
+        more = self.transfer.at(grid.s[len(self.grid.s) :])
+        parts = (*self.parts, slice(len(self.grid.s), len(grid.s)))
+        value = np.concatenate([self.value, more], axis=2)
+        return replace(self, grid=grid, value=value, parts=parts)
+
+    def reaches(self, times: int) -> bool:
+        """Whether rates so many times as far can be looked at."""
+        lines, numbers = times * self.grid.lines, times * self.value.size
+        return numbers <= MOST_NUMBERS and lines <= self.transfer.most(times * self.grid.omega)
 
     def motion(self) -> Moved:
-        """Return the motion."""
+        """Return the motion, its error without rounding."""
         grid, run, order = self.grid, self.run, self.run.order
-        fast, force, smooth = self._smooth()
+        fast, _, smooth = self._smooth
         value, differ, later = self._summed(smooth)
         value += self._resting()
         for d, one in enumerate(self.forces):
             value += convolve(fast, d, one, run.time, order)
-        wrong = self.error + EPS * np.abs(response(fast, grid.s))
-        wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
-        wrong = ROUNDING / grid.period * np.sqrt((wrong**2).sum(axis=1))
-        rounding = np.multiply.outer(wrong, np.exp(grid.a * (run.time - grid.begin)))
         alias = ALIAS * self.decay * later
         # modes beyond the rates, where none is near their end, are seen by what they do there
         last = np.median(np.abs(smooth[:, -(grid.lines // LAST) :]), axis=1)
         alias += grid.omega / math.pi * last + self._unseen()
-        error = TIMES * differ + rounding + alias[:, None] + self._at_jumps(fast)
+        error = TIMES * differ + alias[:, None] + self._at_jumps(fast)
         return Moved(value, error, "line", lines=grid.lines)
 
+    def rounded(self, moved: Moved) -> Moved:
+        """Return the motion with what rounding adds to its error."""
+        grid, (fast, force, _) = self.grid, self._smooth
+        parts = [_rounding(self.transfer, grid.s[k], self.value[..., k]) for k in self.parts]
+        wrong = np.concatenate(parts, axis=2) + EPS * np.abs(response(fast, grid.s))
+        wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
+        wrong = ROUNDING / grid.period * np.sqrt((wrong**2).sum(axis=1))
+        grown = np.exp(grid.a * (self.run.time - grid.begin))
+        return moved._replace(error=moved.error + np.multiply.outer(wrong, grown))
+
+    @computed
     def _smooth(self) -> tuple[Expansion, Complex, Complex]:
-        """Return what the transfer functions do at once, the forces, and the motion without it."""
+        """What the transfer functions do at once, the forces, and the motion without it."""
         looked = self._far[: len(self.run.places), : len(self.run.responses), : len(LOOKS)]
         fast = at_once(looked, self.grid.omega, self.value[..., 0])
         force = np.stack([transform(one, self.grid) for one in self.forces])
@@ -278,7 +293,7 @@ class Line:
         twice = replace(grid, count=2 * grid.count, a=slower, finer=1)
         line = replace(self, grid=twice, value=self.transfer.at(twice.s))
         ends = np.exp(-36 * np.linspace(0.0, 1.0, twice.lines + 1) ** SHARP)
-        after = np.abs(twice.finely(line._smooth()[2] * ends))[:, twice.lines :]
+        after = np.abs(twice.finely(line._smooth[2] * ends))[:, twice.lines :]
         return np.maximum(most, after.max(axis=1))
 
 

@@ -12,12 +12,15 @@ from ...scene.force import Samples
 from .exponentials import Oscillators, is_uniform, ramp, rates
 
 SLICE = 256  # The core takes so many blocks in one call: a look for Ctrl-C every millisecond.
-BLOCK = 32  # Even steps are taken so many at a time; between them states are not needed.
+BLOCK, LONG = 16, 8192
+"""Even steps are taken so many at a time, twice as many of more samples than this."""
 FREE, HELD, RAMP = [0, 1, 4, 5], [2, 6], [3, 7]
 """Changes by the state, under the force at the beginning, and under what it grows by."""
 LANES = 8  # Modes of the core come in multiples of this.
 SHORT = 1.5  # Taylor's series gives the change up to this rate times step,
-TERMS = 30  # by so many terms.
+TERMS = 23  # by so many terms,
+WEIGHTS = np.array([[1.0, 1 / (n + 1), 1 / ((n + 1) * (n + 2))] for n in range(1, TERMS)]).T
+"""which count so much in it and in its integrals."""
 
 
 def straight_lines(modes: Oscillators, rest: Real, force: Samples, time: Real, order: int) -> Real:
@@ -39,7 +42,9 @@ def straight_lines(modes: Oscillators, rest: Real, force: Samples, time: Real, o
 def _followed(modes: Oscillators, grid: Real, sample: Real) -> Real:
     """Return a q + b q' at all times."""
     spare = -len(modes.sigma) % LANES
-    wide = Oscillators(*(np.pad(each, [(0, 0)] * (each.ndim - 1) + [(0, spare)]) for each in modes))
+    wide = Oscillators(
+        *(np.concatenate([each, np.zeros((*each.shape[:-1], spare))], axis=-1) for each in modes)
+    )
     if is_uniform(grid):
         return _in_blocks(wide, (grid[-1] - grid[0]) / (len(grid) - 1), sample)
     return _step_by_step(wide, np.diff(grid), sample)
@@ -55,7 +60,7 @@ def _in_blocks(modes: Oscillators, h: float, sample: Real) -> Real:
 
     to the free motion, in which the same P and S balance a force at rest to the last digit.
     """
-    size = min(BLOCK, len(sample))
+    size = min(BLOCK * (1 + (len(sample) > LONG)), len(sample))
     blocks = -(-len(sample) // size)
     padded = np.append(sample, np.full(blocks * size + 1 - len(sample), sample[-1]))
     force = np.lib.stride_tricks.sliding_window_view(padded, size + 1)[::size]
@@ -154,14 +159,11 @@ def _series(steps: _Advance) -> Real:
     """Sum S = sum_n c_n, (n + 1) c_n = -2 sigma t c_(n-1) - square t^2/n c_(n-2), and integrals."""
     t = steps.t
     drag, spring = 2 * steps.sigma * t, steps.square * t * t
-    before, term = np.zeros_like(t), t
-    result = np.zeros((3, len(t)))
-    for n in range(1, TERMS):
-        result += term / np.array([[1], [n + 1], [(n + 1) * (n + 2)]])
-        before, term = term, -(drag * term + spring / n * before) / (n + 1)
-    result[1] *= t
-    result[2] *= t * t
-    return result
+    term = np.zeros((TERMS, len(t)))
+    term[1] = t
+    for n in range(1, TERMS - 1):
+        term[n + 1] = (drag * term[n] + spring / n * term[n - 1]) / -(n + 1)
+    return np.asarray(WEIGHTS @ term[1:] * np.stack([np.ones_like(t), t, t * t]))
 
 
 def _swinging(steps: _Advance) -> Real:

@@ -128,6 +128,6 @@ def peak(push: Force | float, time: Real) -> tuple[float, float]:
         return abs(push), 0.0
     begin, end = float(time[0]), float(time[-1])
     breaks = [begin, *(at for at in push.breaks if begin < at < end), end]
-    looks = np.concatenate([time, (np.array(breaks[1:]) + np.array(breaks[:-1])) / 2])
+    between = (np.array(breaks[1:]) + np.array(breaks[:-1])) / 2
     blows = sum(abs(size) for at, size in push.blows if begin <= at <= end)
-    return float(np.abs(push.value(looks)).max()), float(blows)
+    return max(float(np.abs(push.value(at)).max()) for at in (time, between)), float(blows)

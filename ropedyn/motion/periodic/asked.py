@@ -77,7 +77,12 @@ class SteppedSine:
         )
 
     def answer(
-        self, frequency: Real, value: Complex, error: Real, cost: Cost, stable: Flags
+        self,
+        frequency: Real,
+        value: Complex,
+        error: Real,
+        cost: Cost,
+        stable: Flags | Callable[[], Flags],
     ) -> FRF:
         """Return steady states per amplitude, (responses, f), with their relative errors."""
         scene, ends = self.model.scene, ((self.drive,), self.responses)

@@ -4,6 +4,7 @@
 
 with r_k the Fourier coefficients of the forces, sampled over a period. Motion is the sum of
 q_k e^(i k omega t) over -K..K, q_-k = conj q_k. Unknown are the real numbers Re q_0..K, Im q_1..K.
+Several motions at once, each at a frequency, stand in front of all shapes.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from .transfer import PanelledTransfer
 
 
 class Linear(NamedTuple):
-    """The balance about a motion."""
+    """The balance about a motion, or about several in front of the shapes."""
 
     gap: Real  # (n,) what is not balanced
     jacobian: Real  # (n, n)
@@ -56,84 +57,90 @@ class HarmonicBalance:
 
     def complex(self, x: Real) -> Complex:
         """Return the harmonics, (points, K + 1), of the unknowns."""
-        x = x.reshape(self.points, -1)
-        q = x[:, : self.harmonics + 1].astype(np.complex128)
-        q[:, 1:] += 1j * x[:, self.harmonics + 1 :]
+        x = x.reshape(*x.shape[:-1], self.points, -1)
+        q = x[..., : self.harmonics + 1].astype(np.complex128)
+        q[..., 1:] += 1j * x[..., self.harmonics + 1 :]
         return q
 
     def real(self, q: Complex) -> Real:
         """Return the unknowns, (n,), of harmonics."""
-        return np.concatenate([q.real, q.imag[:, 1:]], axis=1).ravel()
+        return _flat(np.concatenate([q.real, q.imag[..., 1:]], axis=-1))
 
     def wider(self, x: Real, harmonics: int) -> Real:
         """Return the unknowns of a balance with more harmonics, the new ones 0."""
         q = self.complex(x)
-        more = np.zeros((self.points, harmonics + 1), dtype=np.complex128)
-        more[:, : q.shape[1]] = q
-        return np.concatenate([more.real, more.imag[:, 1:]], axis=1).ravel()
+        more = np.zeros((*q.shape[:-1], harmonics + 1), dtype=np.complex128)
+        more[..., : q.shape[-1]] = q
+        return self.real(more)
 
-    def motion(self, q: Complex, omega: float) -> tuple[Real, Real, Real]:
+    def motion(self, q: Complex, omega: Real | float) -> tuple[Real, Real, Real]:
         """Return the times of a period, and displacement and velocity there."""
-        both = np.stack([q, 1j * omega * self.order * q])
-        u, v = np.fft.irfft(both, self.samples) * self.samples
-        return 2 * np.pi / omega * np.arange(self.samples) / self.samples, u, v
+        rate = np.asarray(omega)[..., None]
+        both = np.stack([q, 1j * (rate * self.order)[..., None, :] * q])
+        u, v = np.fft.irfft(both, self.samples, norm="forward")
+        return 2 * np.pi / rate * (np.arange(self.samples) / self.samples), u, v
 
     def coefficients(self, sampled: Real) -> Complex:
         """Return Fourier coefficients 0..K of something over a period."""
-        return np.fft.rfft(sampled, axis=-1)[..., : self.harmonics + 1] / self.samples
+        return np.fft.rfft(sampled, norm="forward")[..., : self.harmonics + 1]
 
-    def forces(self, x: Real, omega: float) -> Complex:
+    def forces(self, x: Real, omega: Real | float) -> Complex:
         """Return the harmonics of the forces, (points, K + 1)."""
         return self.coefficients(self.force.force(*self.motion(self.complex(x), omega)))
 
-    def driven(self, share: float = 1.0) -> Complex:
+    def driven(self, share: Real | float = 1.0) -> Complex:
         """Return the harmonics of the drive, (K + 1,)."""
-        F = np.zeros(self.harmonics + 1, dtype=np.complex128)
-        F[self.turn] = share * self.amplitude / 2
+        F = np.zeros((*np.shape(share), self.harmonics + 1), dtype=np.complex128)
+        F[..., self.turn] = share * self.amplitude / 2
         return F
 
-    def at(self, x: Real, omega: float, share: float = 1.0) -> tuple[Linear, Real]:
+    def at(self, x: Real, omega: Real | float, share: Real | float = 1.0) -> tuple[Linear, Real]:
         """Return the balance about a motion: slope by omega, and by the share of the drive."""
-        q, k = self.complex(x), self.order
+        q, k, m = self.complex(x), self.order, self.points
+        rate = np.asarray(omega)[..., None]
         time, u, v = self.motion(q, omega)
         felt = self.force.felt(time, u, v)
-        H, slope = self.transfer.with_slope(k * omega)
-        H, slope = H[:, : self.points], slope[:, : self.points]
-        push = np.concatenate([self.coefficients(felt.force), self.driven(share)[None]])
-        gap = q.T - _on(H, push)
-        by_omega = -k[:, None] * _on(slope, push)
+        H, slope = (one[..., :m, :] for one in self.transfer.with_slope(rate * k))
+        push = np.empty((*q.shape[:-2], m + 1, len(k)), dtype=np.complex128)
+        push[..., :m, :], push[..., m, :] = self.coefficients(felt.force), self.driven(share)
+        gap = q - _on(H, push)
+        by_omega = -k * _on(slope, push)
         if felt.by_v.any():
-            rate = self.coefficients(np.einsum("pjn,jn->pn", felt.by_v, v / omega))
-            by_omega -= _on(H[..., :-1], rate)
-        by_share = -H[..., -1] * self.driven()[:, None]
-        linear = Linear(self.real(gap.T), self._jacobian(H, felt, omega), self.real(by_omega.T))
-        return linear, self.real(by_share.T)
+            turned = np.einsum("...pjn,...jn->...pn", felt.by_v, v / rate[..., None])
+            by_omega -= _on(H[..., :-1], self.coefficients(turned))
+        by_share = -H[..., -1].swapaxes(-1, -2) * self.driven()
+        linear = Linear(self.real(gap), self._jacobian(H, felt, rate), self.real(by_omega))
+        return linear, self.real(by_share)
 
-    def _jacobian(self, H: Complex, felt: Felt, omega: float) -> Real:
+    def _jacobian(self, H: Complex, felt: Felt, rate: Real) -> Real:
         """Return I - H (r_u + r_v i l omega)^ for real unknowns."""
         K, m = self.harmonics, self.points
         stiff = self._toeplitz(felt.by_u)
         if felt.by_v.any():
-            stiff = stiff + self._toeplitz(felt.by_v) * (1j * omega * np.arange(-K, K + 1))
+            turn = 1j * (rate * np.arange(-K, K + 1))[..., None, None, None, :]
+            stiff += self._toeplitz(felt.by_v) * turn
+        several = stiff.shape[:-4]
         # (k, i, p) (k, p, j l)
-        moved = H[..., :-1] @ stiff.transpose(2, 0, 1, 3).reshape(K + 1, m, -1)
-        moved = moved.reshape(K + 1, m, m, 2 * K + 1).transpose(1, 0, 2, 3)
+        stiff = np.moveaxis(stiff, -2, -4).reshape(*several, K + 1, m, -1)
+        moved = (H[..., :-1] @ stiff).reshape(*several, K + 1, m, m, 2 * K + 1).swapaxes(-4, -3)
         ahead, behind = moved[..., K:], moved[..., K::-1]
-        even = ahead + behind
-        even[..., 0] = ahead[..., 0]
-        odd = (1j * (ahead - behind))[..., 1:]
-        both = np.concatenate([even, odd], axis=3)
-        rows = np.concatenate([both.real, both.imag[:, 1:]], axis=1)
+        both = np.concatenate([ahead + behind, 1j * (ahead - behind)[..., 1:]], axis=-1)
+        both[..., 0] = ahead[..., 0]
+        rows = np.concatenate([both.real, both.imag[..., 1:, :, :]], axis=-3)
         n = m * (2 * K + 1)
-        return np.eye(n) - rows.reshape(n, n)
+        return np.eye(n) - rows.reshape(*several, n, n)
 
     def _toeplitz(self, slope: Real) -> Complex:
         """Return the coefficients k - l of slopes, (points, points, K + 1, 2K + 1)."""
-        ahead = np.fft.rfft(slope, axis=2)[..., : 2 * self.harmonics + 1] / self.samples
-        every = np.concatenate([ahead[..., :0:-1].conj(), ahead], axis=2)
+        ahead = np.fft.rfft(slope, norm="forward")[..., : 2 * self.harmonics + 1]
+        every = np.concatenate([ahead[..., :0:-1].conj(), ahead], axis=-1)
         return np.asarray(every[..., self.pairs])
 
 
+def _flat(unknowns: Real) -> Real:
+    return unknowns.reshape(*unknowns.shape[:-2], -1)
+
+
 def _on(H: Complex, push: Complex) -> Complex:
-    """Return H_k push_k, (K + 1, points)."""
-    return np.asarray((H @ push.T[..., None])[..., 0])
+    """Return H_k push_k, (points, K + 1)."""
+    return np.asarray(np.einsum("...kip,...pk->...ik", H, push))

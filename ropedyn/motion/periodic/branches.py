@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from ...base import check
 from ...base.answer import Answer, Cost, axes
 from ...base.array import Complex, Flags, Index, Real
+from ...base.computed import Late, Lazy, lazy
 from ...base.errors import SceneError, SolveError
 from ...base.table import Table
 from ...chain.port import Point
@@ -20,7 +22,7 @@ from .balance import HarmonicBalance
 from .continuation import Place
 from .driven import Driven
 from .state import HARMONICS, MOST, SteadyState, by_frequency, settled
-from .stepped import STEPS, at_rest, holds, pieces, watched
+from .stepped import STEPS, at_rest, holding, pieces, watched
 
 SAME = 1e-3  # Motions at one frequency that differ by less are one, relative.
 
@@ -50,8 +52,8 @@ class Branches(Answer):
     rounding_error : ndarray, as value
         Estimated relative error.
     stable : ndarray of bool, shape (points,)
-        Whether the motion comes back to itself when it is disturbed; False too where that cannot
-        be told, as on folds.
+        Whether the motion comes back to itself when it is disturbed, computed when it is first
+        asked for; False too where that cannot be told, as on folds.
     folds : ndarray, shape (f,)
         Frequencies at which a branch turns into the next [Hz], in the order they are passed.
     fold_error : ndarray, shape (f,)
@@ -82,11 +84,11 @@ class Branches(Answer):
     frequency: Real = field(metadata=axes("point", unit="Hz"))
     value: Complex = field(metadata=axes("response", "point"))
     rounding_error: Real = field(metadata=axes("response", "point"))
-    stable: Flags = field(metadata=axes("point"))
     folds: Real = field(metadata=axes("fold", unit="Hz"))
     fold_error: Real = field(metadata=axes("fold", unit="Hz"))
     mesh_error: Real = field(metadata=axes("response", "point"))
     cost: Cost
+    stable: Lazy[Flags] = lazy(np.ndarray, axes("point"))
 
     def __len__(self) -> int:
         return len(self.first)
@@ -108,7 +110,7 @@ class Branches(Answer):
             rounding_bound=self.rounding_error[:, part],
             cost=self.cost,
             mesh=MeshOfResponse(self.mesh_error[:, part]),
-            stable=self.stable[part],
+            stable=Late(lambda: self.stable[part]),
         )
 
     def __iter__(self) -> Iterator[FRF]:
@@ -137,9 +139,9 @@ def solve_branches(asked: SteppedSine) -> Branches:
     harmonics = HARMONICS
     while True:
         balance = driven.balance(harmonics)
-        traces = [[settled(driven, one) for one in way] for way in traced(driven, balance)]
-        found = [[one for one in way if one is not None] for way in traces]
-        if found == traces:
+        traces = [settled(driven, way) for way in traced(driven, balance)]
+        found = [way for way in traces if way is not None]
+        if len(found) == len(traces):
             return _answer(driven, found)
         harmonics *= 2
         if 2 * harmonics > MOST:
@@ -217,14 +219,10 @@ def _answer(driven: Driven, traces: list[list[SteadyState]]) -> Branches:
     folds = [one for trace in traces for one in trace if one.kind == "fold"]
     frequency = np.array([one.frequency for one in states])
     value, error = watched(driven, frequency, states)
-    stable = []
-    for k, one in enumerate(states):
-        stable.append(one.kind != "fold" and holds(driven, one))
-        asked.progress((k + 1) / len(states))
     unknowns = max(len(one.place.x) for one in states)
     lines = driven.transfer.lines + len(states)
     cost = Cost("balance", len(asked.model.x) - 1, unknowns, sweeps=2 * lines)
-    whole = asked.answer(frequency, value, error, cost, np.array(stable))
+    whole = asked.answer(frequency, value, error, cost, Late(partial(holding, driven, states)))
     return Branches(
         whole.drive,
         whole.response,
@@ -234,7 +232,7 @@ def _answer(driven: Driven, traces: list[list[SteadyState]]) -> Branches:
         frequency=frequency,
         value=whole.value,
         rounding_error=whole.rounding_error,
-        stable=np.array(stable),
+        stable=Late(lambda: whole.stable),
         folds=np.array([one.frequency for one in folds]),
         fold_error=np.array([one.moved for one in folds]),
         mesh_error=whole.mesh_error,

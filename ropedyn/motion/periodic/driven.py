@@ -75,12 +75,14 @@ class Driven:
     @computed
     def transfer(self) -> PanelledTransfer:
         """What points and drive move, (points and held, points and drive); forces where held."""
-        return PanelledTransfer(self._transfer)
+        return PanelledTransfer(
+            lambda omega: self._holding(self._moved(omega).value.transpose(2, 1, 0)),
+            lambda omega: known_to(self._moved(omega)),
+        )
 
-    def _transfer(self, omega: Real) -> tuple[Complex, Real]:
+    def _moved(self, omega: Real) -> FRF:
         pushed = [*self.points, *self.held, self.asked.drive]
-        found = self._asked(omega / (2 * np.pi), pushed, [*self.points, *self.held])
-        return self._holding(found.value.transpose(2, 1, 0)), known_to(found)
+        return self._asked(omega / (2 * np.pi), pushed, [*self.points, *self.held])
 
     def _asked(self, frequency: Real, drives: list[Point], responses: list[Point]) -> FRF:
         model = self.asked.model
@@ -164,7 +166,7 @@ class Driven:
     def linear_motion(self, balance: HarmonicBalance, omega: float) -> Real:
         """Return the motion of the points without what is not linear."""
         H = balance.transfer.at(balance.order * omega)[:, : balance.points, -1]
-        return balance.real((H * balance.driven()[:, None]).T)
+        return balance.real(H.T * balance.driven())
 
     def hold(self, balance: HarmonicBalance | None, x: Real, omega: float) -> Real:
         """Return the largest force that holds each held point, (held,)."""

@@ -1,7 +1,7 @@
 """Forces that are not in proportion to motion, as functions of a whole period of it.
 
 The motion u, v of the points is sampled, (points, samples). A force answers with itself and its
-slopes df/du and df/dv, (points, points, samples).
+slopes df/du and df/dv, (points, points, samples). Several motions stand in front of these shapes.
 """
 
 from __future__ import annotations
@@ -63,23 +63,24 @@ class PointLaws:
 
     def force(self, time: Real, u: Real, v: Real) -> Real:
         """Return the forces alone."""
-        force = np.zeros((self.points, len(time)))
+        force = np.zeros(u.shape)
         for one, k in zip(self.laws, self.at):
+            moved = time, u[..., k, :], v[..., k, :]
             if one.law.kind == "call":
-                force[k] += asked_law(one, time, u[k], v[k])
+                force[..., k, :] += asked_law(one, *moved)
             else:
-                force[k] += KINDS[one.law.kind](one, time, u[k], v[k])[0]
+                force[..., k, :] += KINDS[one.law.kind](one, *moved)[0]
         return force
 
     def felt(self, time: Real, u: Real, v: Real) -> Felt:
         """Return the forces with their slopes."""
-        force = np.zeros((self.points, len(time)))
-        by_u, by_v = np.zeros((2, self.points, self.points, len(time)))
+        force = np.zeros(u.shape)
+        by_u, by_v = np.zeros((2, *u.shape[:-2], self.points, *u.shape[-2:]))
         for one, k in zip(self.laws, self.at):
-            f, f_u, f_v = KINDS[one.law.kind](one, time, u[k], v[k])
-            force[k] += f
-            by_u[k, k] += f_u
-            by_v[k, k] += f_v
+            f, f_u, f_v = KINDS[one.law.kind](one, time, u[..., k, :], v[..., k, :])
+            force[..., k, :] += f
+            by_u[..., k, k, :] += f_u
+            by_v[..., k, k, :] += f_v
         return Felt(force, by_u, by_v)
 
 
@@ -100,10 +101,10 @@ def _stop(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:
     a changes by 2 w meanwhile. So the force has a slope when contact begins at one more sample.
     """
     k, gap, side = one.law.value
-    step = (time[-1] - time[0]) / (len(time) - 1)
+    step = time[..., 1:2] - time[..., :1]
     # where v passes 0 it is the acceleration that moves
-    turns = max(float(np.abs(v[1:] - v[:-1]).max()), abs(float(v[0] - v[-1]))) / 4
-    passing = np.hypot(v, turns) if turns else np.full_like(v, TINY)
+    turns = np.abs(np.diff(v, prepend=v[..., -1:])).max(axis=-1, keepdims=True) / 4
+    passing = np.maximum(np.hypot(v, turns), TINY)
     a, w = side * u - gap, np.maximum(passing * (step / 2), TINY)
     share = np.minimum(np.maximum((a + w) / (2 * w), 0.0), 1.0)
     deep = np.where(share < 1, share * share * w, a)
@@ -113,21 +114,17 @@ def _stop(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:
 
 def _call(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:
     """Ask a function once, for numerical slopes too."""
-    a, b = (STEP * max(float(np.abs(moves).max()), TINY) for moves in (u, v))
-    times, us, vs = np.tile(time, 5), np.tile(u, 5), np.tile(v, 5)
-    n = len(time)
-    us[n : 2 * n] += a
-    us[2 * n : 3 * n] -= a
-    vs[3 * n : 4 * n] += b
-    vs[4 * n :] -= b
-    force, more, less, faster, slower = np.split(asked_law(one, times, us, vs), 5)
+    a, b = (STEP * np.maximum(np.abs(moves).max(axis=-1, keepdims=True), TINY) for moves in (u, v))
+    both = np.stack([u, u + a, u - a, u, u]), np.stack([v, v, v, v + b, v - b])
+    force, more, less, faster, slower = asked_law(one, np.stack([time] * 5), *both)
     return force, (more - less) / (2 * a), (faster - slower) / (2 * b)
 
 
 def asked_law(one: ActingLaw, time: Real, u: Real, v: Real) -> Real:
     """Return what a law in Python says: asked with arrays where it takes them."""
-    call = one.law.call
+    call, shape = one.law.call, u.shape
     assert call is not None
+    time, u, v = time.ravel(), u.ravel(), v.ravel()
     try:
         with np.errstate(all="ignore"):
             whole: Any = call(time, u, v)  # type: ignore[arg-type]
@@ -138,9 +135,9 @@ def asked_law(one: ActingLaw, time: Real, u: Real, v: Real) -> Real:
         alone = [_number(one, call, float(time[n]), float(u[n]), float(v[n])) for n in probes]
         same = all(abs(whole[n] - x) <= 1e-12 * abs(x) for n, x in zip(probes, alone))
         if same and np.isfinite(whole).all():
-            return whole
+            return whole.reshape(shape)
     each = zip(time.tolist(), u.tolist(), v.tolist())
-    return np.array([_number(one, call, *sample) for sample in each])
+    return np.array([_number(one, call, *sample) for sample in each]).reshape(shape)
 
 
 def _number(
@@ -188,10 +185,10 @@ class StringTension:
         D = self.free
         K = D.T @ (D / self.length[:, None])
         pull = K @ u
-        h = self.pulsation(time) + self.stretching * (u * pull).sum(axis=0)
-        by_u = -np.multiply.outer(K, h)
-        by_u -= 2 * self.stretching * pull[:, None] * pull[None]
-        return Felt(-h * pull, by_u, np.zeros_like(by_u))
+        h = self.pulsation(time) + self.stretching * (u * pull).sum(axis=-2)
+        by_u = K[..., None] * -h[..., None, None, :]
+        by_u -= 2 * self.stretching * pull[..., None, :] * pull[..., None, :, :]
+        return Felt(-h[..., None, :] * pull, by_u, np.zeros_like(by_u))
 
 
 @dataclass(frozen=True)

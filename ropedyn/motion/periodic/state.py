@@ -16,6 +16,7 @@ HARMONICS, MOST = 8, 256  # Of the drive, that branches are followed with and an
 TOLERANCE = 1e-5  # Of the steady state where none is given.
 SCALE = 0.05  # Of a frequency: steps of a branch are measured in it.
 SMALL = 1e-6  # Motion below this part of that of the linear scene is as good as none.
+BATCH = 1 << 15  # Numbers of matrices that are solved together.
 ALIKE = 0.1  # More harmonics that move a motion by more may have found another one.
 
 
@@ -25,9 +26,10 @@ class SteadyState(NamedTuple):
     balance: HarmonicBalance
     place: Place  # over the base frequency
     kind: str = "asked"  # an "asked" frequency, a "step" of a branch or a "fold" of it
-    change: Complex = np.zeros(
-        0, dtype=np.complex128
-    )  # of the forces of points, by the last harmonics
+    push: Complex = np.zeros(0, dtype=np.complex128)
+    """The forces of points at the frequency of the drive, per amplitude, (points,)."""
+    change: Complex = np.zeros(0, dtype=np.complex128)
+    """Of them, by the last harmonics."""
     moved: float = 0.0  # how far they moved a step or fold [Hz]
 
     @property
@@ -35,17 +37,11 @@ class SteadyState(NamedTuple):
         """Of the drive [Hz]."""
         return self.place.p * self.balance.turn / (2 * np.pi)
 
-    @property
-    def push(self) -> Complex:
-        """The forces of points at the frequency of the drive, per amplitude, (points,)."""
-        force = self.balance.forces(self.place.x, self.place.p)[:, self.balance.turn]
-        return np.asarray(force / (self.balance.amplitude / 2))
-
 
 def by_frequency(driven: Driven, balance: HarmonicBalance) -> Branch:
     """Return a branch over the base frequency, that nowhere begins yet."""
 
-    def linearise(x: Real, omega: float) -> tuple[Real, Real, Real]:
+    def linearise(x: Real, omega: Real | float) -> tuple[Real, Real, Real]:
         about, _ = balance.at(x, omega)
         return about.gap, about.jacobian, about.slope
 
@@ -54,56 +50,90 @@ def by_frequency(driven: Driven, balance: HarmonicBalance) -> Branch:
     return Branch(linearise, nowhere, SCALE * omega, SMALL * driven.size)
 
 
-def settled(driven: Driven, state: SteadyState, least: int = 0) -> SteadyState | None:
+def settled(driven: Driven, states: list[SteadyState]) -> list[SteadyState] | None:
     """Add harmonics until they change nothing; None where they lead to another motion.
 
-    `least`: so many of the drive are known not to be enough.
+    States have as many harmonics at first.
     """
-    tolerance, balance = driven.asked.tolerance or TOLERANCE, state.balance
-    if not balance.forces(state.place.x, state.place.p).any():
-        return state._replace(change=np.zeros(balance.points, dtype=np.complex128))
-    if least * balance.turn > balance.harmonics:
-        finer = _finer(driven, state, least)
+    tolerance, balance = driven.asked.tolerance or TOLERANCE, states[0].balance
+    force = _forces(states)
+    unmoved = np.zeros(balance.points, dtype=np.complex128)
+    found = [
+        one._replace(push=push, change=unmoved)
+        for one, push in zip(states, _per_amplitude(balance, force))
+    ]
+    rough = np.flatnonzero(force.any(axis=(1, 2)))
+    left = np.full(len(rough), np.inf)
+    while len(rough):
+        if 2 * balance.harmonics > MOST * balance.turn:
+            raise SolveError(
+                f"frequency {found[rough[0]].frequency:.9g} Hz: with {balance.harmonics} harmonics "
+                f"the amplitude is still known to {left[0]:.1e} only: ask for a larger tolerance"
+            )
+        balance = driven.balance(2 * balance.harmonics // balance.turn, balance.turn)
+        finer = _finer(driven, balance, [found[k] for k in rough])
         if finer is None:
             return None
-        state, balance = finer, finer.balance
-    while 2 * balance.harmonics <= MOST * balance.turn:
-        finer = _finer(driven, state, 2 * balance.harmonics // balance.turn)
-        if finer is None:
+        for k, one in zip(rough.tolist(), finer):
+            found[k] = one
+        left = _felt(driven, finer)
+        rough, left = rough[left > tolerance], left[left > tolerance]
+    return found
+
+
+def _finer(
+    driven: Driven, balance: HarmonicBalance, states: list[SteadyState]
+) -> list[SteadyState] | None:
+    """Return states with more harmonics, None where they lead to another motion."""
+    narrow, branch = states[0].balance, by_frequency(driven, balance)
+    places = [one.place._replace(x=narrow.wider(one.place.x, balance.harmonics)) for one in states]
+    asked = [k for k, one in enumerate(states) if one.kind == "asked"]
+    most = max(1, BATCH // len(places[0].x) ** 2)
+    for these in (asked[k : k + most] for k in range(0, len(asked), most)):
+        each = [places[k] for k in these]
+        x, is_found = branch.settled(np.array([one.x for one in each]), _rates(each))
+        if not is_found.all():
             return None
-        left = np.abs(_felt(driven, finer)).max()
-        if left <= tolerance:
-            return finer
-        state, balance = finer, finer.balance
-    raise SolveError(
-        f"frequency {state.frequency:.9g} Hz: with {balance.harmonics} harmonics the amplitude is "
-        f"still known to {left:.1e} only: ask for a larger tolerance"
-    )
+        for k, one in zip(these, x):
+            places[k] = places[k]._replace(x=one)
+    for k, one in enumerate(states):
+        if one.kind != "asked":
+            # across the branch: its place may move along it
+            along = narrow.wider(one.place.along, balance.harmonics)
+            reached = branch.reached(places[k]._replace(along=along), 0.0)
+            if reached is None:
+                return None
+            places[k] = reached[0]
+    finer = [one._replace(balance=balance, place=place) for one, place in zip(states, places)]
+    found = []
+    for one, before, push in zip(finer, states, _per_amplitude(balance, _forces(finer))):
+        start = narrow.wider(before.place.x, balance.harmonics)
+        if np.linalg.norm(one.place.x - start) > ALIKE * np.linalg.norm(start):
+            return None
+        moved = abs(one.place.p - before.place.p) / (2 * np.pi)
+        found.append(one._replace(push=push, change=push - before.push, moved=moved))
+    return found
 
 
-def _finer(driven: Driven, state: SteadyState, harmonics: int) -> SteadyState | None:
-    """Return a state with more harmonics, None where they lead to another motion."""
-    narrow, place = state.balance, state.place
-    balance = driven.balance(harmonics, narrow.turn)
-    branch = by_frequency(driven, balance)
-    start = narrow.wider(place.x, balance.harmonics)
-    if state.kind == "asked":
-        x = branch.settle(start, place.p)
-        found = None if x is None else place._replace(x=x)
-    else:
-        # across the branch: its place may move along it
-        along = narrow.wider(place.along, balance.harmonics)
-        reached = branch.reached(Place(start, place.p, along, place.up), 0.0)
-        found = None if reached is None else reached[0]
-    if found is None or np.linalg.norm(found.x - start) > ALIKE * np.linalg.norm(start):
-        return None
-    wide = SteadyState(balance, found, state.kind, moved=abs(found.p - place.p) / (2 * np.pi))
-    return wide._replace(change=wide.push - state.push)
+def _rates(places: list[Place]) -> Real:
+    return np.array([one.p for one in places])
 
 
-def _felt(driven: Driven, state: SteadyState) -> Complex:
+def _forces(states: list[SteadyState]) -> Complex:
+    """Return the harmonics of the forces, (states, points, K + 1)."""
+    places = [one.place for one in states]
+    return states[0].balance.forces(np.array([one.x for one in places]), _rates(places))
+
+
+def _per_amplitude(balance: HarmonicBalance, force: Complex) -> Complex:
+    return np.asarray(force[..., balance.turn] / (balance.amplitude / 2))
+
+
+def _felt(driven: Driven, states: list[SteadyState]) -> Real:
     """Return what the last harmonics moved the points by, relative to the largest motion."""
-    omega = state.place.p * state.balance.turn
-    H = driven.transfer.at(np.array([omega]))[0, : len(driven.points)]
-    motion = H[:, :-1] @ state.push + H[:, -1]
-    return np.asarray(H[:, :-1] @ state.change / np.abs(motion).max())
+    omega = 2 * np.pi * np.array([one.frequency for one in states])
+    H = driven.transfer.at(omega)[:, : len(driven.points)]
+    push, change = (np.array([getattr(one, name) for one in states]) for name in ("push", "change"))
+    motion = np.einsum("fip,fp->fi", H[..., :-1], push) + H[..., -1]
+    moved = np.einsum("fip,fp->fi", H[..., :-1], change)
+    return np.asarray(np.abs(moved).max(axis=1) / np.abs(motion).max(axis=1))

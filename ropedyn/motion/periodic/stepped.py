@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import groupby, islice
 
 import numpy as np
 
 from ...base.answer import Cost
-from ...base.array import Complex, Real
+from ...base.array import Complex, Flags, Real
+from ...base.computed import Late
 from ...base.errors import SolveError
 from ...response.frf import FRF
 from ...response.harmonic import solve_harmonic
 from .asked import SteppedSine
 from .balance import HarmonicBalance
-from .continuation import Branch, Place
+from .continuation import ENOUGH, ROUGHLY, Branch, Place
 from .driven import Driven, known_to
 from .slipping import slipping
 from .stability import growing
@@ -23,6 +26,7 @@ from .transfer import PanelledTransfer
 
 FIRST = 1e-3  # Share of the amplitude from which it is raised.
 STEPS = 4000  # A branch is followed for so many at most on the way to one frequency.
+TOGETHER = 16  # States are made exact so many at a time.
 WAY = 3.0  # It may go so far beyond the frequencies that are asked for, times.
 UNDAMPED = 8.0  # Undamped motion up to so many times the highest frequency is looked for.
 
@@ -36,13 +40,10 @@ def solve_stepped(asked: SteppedSine) -> FRF:
     if _slips(driven, states):
         return slipping(asked, driven.turn)
     value, error = watched(driven, asked.frequency, states)
-    stable = np.full(len(asked.frequency), driven.growing == 0)
-    for k, state in enumerate(states):
-        stable[k] = holds(driven, state)
-        asked.progress(0.5 + (k + 1) / (2 * len(states)))
     unknowns = max((len(state.place.x) for state in states), default=0)
     lines = driven.transfer.lines + len(asked.frequency)
     cost = Cost("balance", len(asked.model.x) - 1, unknowns, sweeps=2 * lines)
+    stable = Late(partial(holding, driven, states))
     return asked.answer(asked.frequency, value, error, cost, stable)
 
 
@@ -60,9 +61,17 @@ def watched(driven: Driven, frequency: Real, states: list[SteadyState]) -> tuple
     return value, np.divide(error, size, out=relative, where=size > 0)
 
 
-def holds(driven: Driven, state: SteadyState) -> bool:
-    """Whether a motion comes back to itself."""
-    return growing(state.balance, state.place.x, state.place.p, driven.growing) == 0
+def holding(driven: Driven, states: list[SteadyState]) -> Flags:
+    """Return which motions come back to themselves; folds do not."""
+    if not states:
+        return np.full(len(driven.asked.frequency), driven.growing == 0)
+    return np.array(
+        [
+            one.kind != "fold"
+            and growing(one.balance, one.place.x, one.place.p, driven.growing) == 0
+            for one in states
+        ]
+    )
 
 
 def _linear(asked: SteppedSine, driven: Driven) -> FRF:
@@ -73,11 +82,10 @@ def _linear(asked: SteppedSine, driven: Driven) -> FRF:
     solve = partial(solve_harmonic, asked.model, drive=asked.drive, response=asked.responses)
     solve = partial(solve, threads=1, tight=False)
 
-    def ask(omega: Real) -> tuple[Complex, Real]:
-        found = solve(omega / (2 * np.pi))
-        return found.value.T, known_to(found)
-
-    PanelledTransfer(ask).cover(2 * np.pi * UNDAMPED * float(f.max()))
+    PanelledTransfer(
+        lambda omega: solve(omega / (2 * np.pi)).value.T,
+        lambda omega: known_to(solve(omega / (2 * np.pi))),
+    ).cover(2 * np.pi * UNDAMPED * float(f.max()))
     found = solve(f)
     cost = Cost("sweep", found.cost.elements, found.cost.unknowns, found.cost.sweeps)
     error = found.rounding_error
@@ -103,21 +111,26 @@ def _followed(driven: Driven) -> list[SteadyState]:
     asked, harmonics = driven.asked, HARMONICS
     while True:
         path = Path(driven, driven.balance(harmonics)) if driven.keeps_time else None
+        states = (_state(driven, path, harmonics, f) for f in asked.frequency.tolist())
         finer: list[SteadyState] = []
-        least = 0
-        for k, f in enumerate(asked.frequency.tolist()):
-            found = settled(driven, _state(driven, path, harmonics, f), least)
+        for alike in _alike(states):
+            found = settled(driven, alike)
             if found is None:
                 break
-            # frequencies that follow each other need alike
-            least = found.balance.harmonics // (4 * found.balance.turn)
-            finer.append(found)
-            asked.progress((k + 1) / (2 * len(asked.frequency)))
-        if len(finer) == len(asked.frequency):
+            finer += found
+            asked.progress(len(finer) / len(asked.frequency))
+        else:
             return finer
         harmonics *= 2
         if harmonics >= MOST:
             raise SolveError(f"{harmonics} harmonics do not tell where the branch leads")
+
+
+def _alike(states: Iterable[SteadyState]) -> Iterator[list[SteadyState]]:
+    """Gather states that follow each other and have as many harmonics, some at a time."""
+    for _, alike in groupby(states, lambda one: one.balance.harmonics):
+        while several := list(islice(alike, TOGETHER)):
+            yield several
 
 
 def _state(driven: Driven, path: Path | None, harmonics: int, frequency: float) -> SteadyState:
@@ -134,8 +147,8 @@ def at_rest(driven: Driven, balance: HarmonicBalance, frequency: float) -> Real:
     """Return the motion that is reached when the amplitude of the drive is raised from 0."""
     omega = 2 * np.pi * frequency / balance.turn
 
-    def linearise(x: Real, share: float) -> tuple[Real, Real, Real]:
-        about, by_share = balance.at(x, omega, share)
+    def linearise(x: Real, share: Real | float) -> tuple[Real, Real, Real]:
+        about, by_share = balance.at(x, np.full(np.shape(share), omega), share)
         return about.gap, about.jacobian, by_share
 
     linear = driven.linear_motion(balance, omega)
@@ -236,7 +249,7 @@ class Path:
         """Go on to the next piece."""
         self.piece, self.beyond = self.beyond, None
         if self.piece is None:
-            self.piece, self.beyond = pieces(self.branch)
+            self.piece, self.beyond = pieces(self.branch, enough=ROUGHLY * self.branch.step)
 
     def _crossing(self, omega: float) -> Real | None:
         assert self.piece is not None
@@ -250,11 +263,13 @@ class Path:
         return self._ahead and growing(self.balance, x, omega, self.driven.growing) == 0
 
 
-def pieces(branch: Branch) -> tuple[tuple[Place, Place], tuple[Place, Place] | None]:
+def pieces(
+    branch: Branch, *, enough: float = ENOUGH
+) -> tuple[tuple[Place, Place], tuple[Place, Place] | None]:
     """Take a step; return it, parted where the parameter turns."""
     before = branch.place
     after = branch.advance()
-    fold = branch.fold(before, after) if before.up * after.up < 0 else None
+    fold = branch.fold(before, after, enough=enough) if before.up * after.up < 0 else None
     if fold is None:
         return (before, after), None
     return (before, fold), (fold, after)

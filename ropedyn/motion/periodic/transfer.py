@@ -26,8 +26,8 @@ HALVINGS = 34  # A panel that is still not smooth then has a pole in it.
 
 MOST = 1 << 14  # Panels that are solved at once.
 
-Ask = Callable[[Real], tuple[Complex, Real]]
-"""From frequencies [rad/s], (f,), to transfer functions, (f, ..), and relative errors, (f,)."""
+Ask = Callable[[Real], Complex]
+"""From frequencies [rad/s], (f,), to transfer functions, (f, ..)."""
 
 
 @cache
@@ -43,8 +43,9 @@ def _rule() -> tuple[Real, Real, Real]:
 class PanelledTransfer:
     """H(i omega) between points, on the whole real axis."""
 
-    def __init__(self, ask: Ask) -> None:
+    def __init__(self, ask: Ask, known: Callable[[Real], Real]) -> None:
         self.ask = ask
+        self.known = known  # their relative errors, (f,)
         self.edge = np.zeros(1)  # (panels + 1,) [rad/s]
         self.series = np.zeros((0, 0, 0), dtype=np.complex128)  # (panels, terms, pairs)
         self.shape: tuple[int, ...] = ()  # of what is asked for at one frequency
@@ -61,8 +62,11 @@ class PanelledTransfer:
         low, high = edges[:-1], edges[1:]
         kept: list[tuple[Real, Real, Complex]] = []
         for _ in range(HALVINGS):
-            series, known = self._solved(low, high)
-            rough = _is_rough(series, known)
+            series = self._solved(low, high)
+            rough = _is_rough(series, np.zeros(len(low)))
+            if rough.any():
+                known = self.known(_points(low[rough], high[rough])).reshape(-1, TERMS)
+                rough[rough] = _is_rough(series[rough], known.max(axis=1))
             kept.append((low[~rough], high[~rough], series[~rough]))
             if not rough.any():
                 break
@@ -81,20 +85,18 @@ class PanelledTransfer:
         self.edge = np.concatenate([self.edge, end[order]])
         self.series = np.concatenate([self.series, new[order]]) if len(self.series) else new[order]
 
-    def _solved(self, low: Real, high: Real) -> tuple[Complex, Real]:
-        """Return the series on panels, and how well they are known, relative."""
-        x, terms, _ = _rule()
-        omega = (low + high)[:, None] / 2 + (high - low)[:, None] / 2 * x
+    def _solved(self, low: Real, high: Real) -> Complex:
+        """Return the series on panels."""
+        omega = _points(low, high)
         try:
-            value, known = self.ask(omega.ravel())
+            value = self.ask(omega)
         except SolveError as error:
             if "resonance" not in str(error):
                 raise
             raise _undamped(float(low[(high - low).argmin()])) from error
         self.lines += omega.size
         self.shape = value.shape[1:]
-        series = np.asarray(terms @ value.reshape(len(low), TERMS, -1))
-        return series, known.reshape(len(low), TERMS).max(axis=1)
+        return np.asarray(_rule()[1] @ value.reshape(len(low), TERMS, -1))
 
     def at(self, omega: Real) -> Complex:
         """Return H at frequencies of any sign, (.., pairs as asked)."""
@@ -104,11 +106,11 @@ class PanelledTransfer:
         return np.asarray(value.reshape(*omega.shape, *self.shape))
 
     def with_slope(self, omega: Real) -> tuple[Complex, Complex]:
-        """Return H and dH/domega at frequencies >= 0, (f,)."""
-        panel, basis, stretch = self._basis(omega)
+        """Return H and dH/domega at frequencies >= 0."""
+        panel, basis, stretch = self._basis(omega.ravel())
         both = np.stack([basis, basis @ _rule()[2] * stretch[:, None]], axis=1)
-        value = (both @ self.series[panel]).reshape(len(omega), 2, *self.shape)
-        return value[:, 0], value[:, 1]
+        value = (both @ self.series[panel]).reshape(*omega.shape, 2, *self.shape)
+        return value[..., 0, :, :], value[..., 1, :, :]
 
     def _basis(self, omega: Real) -> tuple[Index, Real, Real]:
         """Return panels, Chebyshev's polynomials there, (f, terms), and their argument's slope."""
@@ -117,6 +119,11 @@ class PanelledTransfer:
         low, stretch = self.edge[panel], 2 / (self.edge[panel + 1] - self.edge[panel])
         angle = np.arccos(np.clip((omega - low) * stretch - 1, -1.0, 1.0))
         return panel, np.cos(np.multiply.outer(angle, np.arange(TERMS))), stretch
+
+
+def _points(low: Real, high: Real) -> Real:
+    """Return where panels are looked at, one after another."""
+    return ((low + high)[:, None] / 2 + (high - low)[:, None] / 2 * _rule()[0]).ravel()
 
 
 def _is_rough(series: Complex, known: Real) -> Flags:
