@@ -18,15 +18,20 @@ WIRE = ATTACHED.index("broken wire")
 AMPLIFIED = 4.0  # Joints that move more than so many times what their ends do are not joined.
 REACH = 0.5  # Series begin at pieces across which nothing changes by more.
 GROWS = 0.125  # Nor does the tension of a string: its series go on as powers of that.
+FADED = 0.5  # What of a motion arrives at the other end; of less, I + D has not all digits.
 TERMS = 24  # REACH^24/24! is nothing at 64 digits of 2, and at 113 with 10 more terms.
 
 
 class Triple(NamedTuple):
-    """An element or several: u_b = (I + D) u_a + G f_b, f_a = (I + D)^T f_b - Q u_a."""
+    """An element or several: u_b = F u_a + G f_b, f_a = F^T f_b - Q u_a, F = I + D.
+
+    D has the digits of what is short, F those of what fades on the way.
+    """
 
     D: Array  # (lines or 1, width, width)
     G: Array
     Q: Array
+    F: Array
 
 
 class Rows(NamedTuple):
@@ -119,15 +124,16 @@ def join(one: Triple, two: Triple, between: Array | None) -> tuple[Triple, Array
     """Join two with a stiffness between; return how much the joint moves as well."""
     # M = (I + G1 K)^-1, K = Q2 + N: F2 M F1, G2 + F2 M G1 F2^T, Q1 + F1^T K M F1
     K = two.Q if between is None else two.Q + between
-    one_, unit = identity(one.D) + one.D, identity(one.D)
-    two_ = identity(two.D) + two.D
-    M = inverse(unit + one.G @ K)
+    M = inverse(identity(one.D) + one.G @ K)
     X = -(M @ one.G) @ K
     Y = two.D + X + two.D @ X
     D = Y + one.D + Y @ one.D
-    G = two.G + two_ @ (M @ one.G) @ turned(two_)
-    Q = one.Q + turned(one_) @ (K @ M) @ one_
-    return Triple(D, G, Q), M
+    G = two.G + two.F @ (M @ one.G) @ turned(two.F)
+    Q = one.Q + turned(one.F) @ (K @ M) @ one.F
+    F = identity(D) + D
+    fades = sizes(np.diagonal(F, axis1=1, axis2=2)) < FADED
+    F = np.where(fades[:, :, None] | fades[:, None], two.F @ M @ one.F, F)
+    return Triple(D, G, Q, F), M
 
 
 def is_calm(M: Array) -> bool:
@@ -186,7 +192,8 @@ def of_transition(X: Array) -> Triple:
     """Return the triple of a transition I + X of (u, f)."""
     w = X.shape[1] // 2
     back = inverse(identity(X)[:w, :w] + X[:, w:, w:])
-    return Triple(turned(-back @ X[:, w:, w:]), X[:, :w, w:] @ back, back @ X[:, w:, :w])
+    D = turned(-back @ X[:, w:, w:])
+    return Triple(D, X[:, :w, w:] @ back, back @ X[:, w:, :w], turned(back))
 
 
 def pieces_of(f: Frame, e: int, patient: bool) -> list[Triple]:
@@ -294,7 +301,7 @@ def stiff_element(f: Frame, e: int) -> tuple[Triple, Array]:
         D[0, x, z] = chain.sag[e] * length * f.z[z] / f.z[x]
         if f.at("beta") >= 0 and chain.kind == RIGID:
             D[0, x, f.at("beta")] = chain.sag[e] * length**2 / 2 * f.z[f.at("beta")] / f.z[x]
-    return Triple(D, G, np.zeros((1, w, w), dtype=S.dtype)), string
+    return Triple(D, G, np.zeros((1, w, w), dtype=S.dtype), identity(D) + D), string
 
 
 def beside_string(bent: Triple, string: Array) -> tuple[Triple, Array]:
@@ -302,14 +309,13 @@ def beside_string(bent: Triple, string: Array) -> tuple[Triple, Array]:
     unit = identity(bent.D)
     X = inverse(unit + bent.G @ string)
     D = X @ bent.D
-    return Triple(D, X @ bent.G, turned(bent.D) @ string @ D), X
+    return Triple(D, X @ bent.G, turned(bent.D) @ string @ D, unit + D), X
 
 
 def rows_of(one: Triple) -> Rows:
     """Return the equations of a triple."""
-    F = identity(one.D) + one.D
     unit = np.broadcast_to(identity(one.D), (1, *one.D.shape[1:]))
-    return Rows(unit, -F, one.G, turned(F), -one.Q)
+    return Rows(unit, -one.F, one.G, turned(one.F), -one.Q)
 
 
 def hinge_rows(f: Frame, compliance: Array) -> Rows:

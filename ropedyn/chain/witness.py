@@ -97,7 +97,7 @@ def element_of(f: Frame, e: int, patient: bool) -> list[Triple] | Strut:
     if not (string != 0).any():
         return [bent]
     whole, X = beside_string(bent, string)
-    return [whole] if is_calm(X) else Strut(identity(bent.D) + bent.D, bent.G, string)
+    return [whole] if is_calm(X) else Strut(bent.F, bent.G, string)
 
 
 def stretch(
