@@ -79,14 +79,6 @@ static void fill(const struct solving *s)
     }
 }
 
-RD_INLINE int any(lane_mask m)
-{
-    long long either = 0;
-    for (int i = 0; i < RD_LANES; i++)
-        either |= m[i];
-    return either != 0;
-}
-
 RD_INLINE void exchange(cv *a, cv *b, lane_mask m)
 {
     const cv x = *a;
@@ -102,8 +94,8 @@ RD_INLINE void eliminate(const struct solving *s, size_t k)
     cv *own = entry(s, k, k);
     for (size_t i = k + 1; i <= last; i++) {
         cv *row = entry(s, i, k);
-        const lane_mask swap = (lane_mask)(c_size(row[0]) > c_size(own[0]));
-        if (!any(swap))
+        const lane_mask swap = l_above(c_size(row[0]), c_size(own[0]));
+        if (!l_any(swap))
             continue;
         for (size_t j = 0; j <= end - k; j++)
             exchange(own + j, row + j, swap);
@@ -113,7 +105,7 @@ RD_INLINE void eliminate(const struct solving *s, size_t k)
     own[0] = c_inverse(own[0]);
     for (size_t i = k + 1; i <= last; i++) {
         cv *row = entry(s, i, k);
-        if (!any((lane_mask)((row[0].re != 0.0) | (row[0].im != 0.0))))
+        if (c_is_zero(row[0]))
             continue;
         const cv by = c_mul(row[0], own[0]);
         for (size_t j = 1; j <= end - k; j++)

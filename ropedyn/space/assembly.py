@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..base.array import Complex, Flags, Index, Real
+from ..base.chebyshev import weights
 from ..base.computed import computed
 from ..base.errors import SolveError
 from .rope import Carried, Factors, SpaceRope, halvings, scaled_rates, size_of
@@ -168,16 +169,15 @@ def parts_at(
     for p, length in enumerate(rope.length.tolist()):
         one = np.ascontiguousarray(coefficients(rates[:, p]))
         halved = int(halvings(max(size[p] * length, rope.least_radians[p]) / equal))
-        triple, alike = parts_of(one, length, equal, halved)
+        triple, count = parts_of(one, length, equal, halved)
         triples.append(triple)
-        counts.append(alike * triple.shape[1])
+        counts.append(count)
         if sum(counts) > MOST_PARTS:
             raise SolveError("the waves are too short for the rope: more than 100000 parts")
     node = np.concatenate([[0], np.cumsum(counts)])
     matrices = np.empty((3, len(rates), node[-1], *rates.shape[-2:]), np.complex128)
     for p, (first, triple) in enumerate(zip(node[:-1], triples)):
-        # parts that are alike are one, or all that lie one after another are there
-        matrices[:, :, first : node[p + 1]] = np.moveaxis(triple, 2, 0)
+        matrices[:, :, first : node[p + 1]] = np.moveaxis(_spread(triple, counts[p]), 2, 0)
     return SpaceParts(matrices, node, np.zeros((3, node[-1])))
 
 
@@ -298,17 +298,25 @@ def bound(system: Assembly, one: LoadedFields, other: LoadedFields) -> Real:
 
 
 def parts_of(rates: Complex, length: float, equal: int, halved: int) -> tuple[Complex, int]:
-    """Return triples (n, parts, 3, width, width) of a piece, and of how many each is one.
+    """Return triples (n, nodes, 3, width, width) of a piece, and how many parts they tell.
 
     They are so many equal ones, or halves and quarters of these where those are not below their own
     resonances.
     """
-    series = series_of(length, halved, rates.shape[1], equal)
-    most = halved
-    while True:
+    series, reached, whole = series_of(length, halved, rates.shape[1], equal), halved, False
+    while not whole:
         triple, reached, whole = _core.space_triples(
-            rates, series, length, equal, halved, most, GENTLE
+            rates, series, length, equal, halved, int(reached), GENTLE
         )
-        if whole:
-            return triple, equal << (halved - reached) if len(series) == 1 else 1
-        most = int(reached)
+    return triple, equal << (halved - reached)
+
+
+def _spread(triple: Complex, count: int) -> Complex:
+    """Return so many parts, one or those that triples tell: the only one, these, or about nodes."""
+    nodes = triple.shape[1]
+    if nodes == 1 or count <= nodes:
+        return triple[:, :count]
+    # from the last node on, which is the left one
+    places = weights(nodes, np.linspace(0.0, 1.0, count))[:, ::-1]
+    found = places @ triple.reshape(len(triple), nodes, -1).view(np.float64)
+    return np.asarray(found).view(np.complex128).reshape(len(triple), count, *triple.shape[2:])
