@@ -47,7 +47,7 @@ RD_INLINE void put(const struct solving *s, size_t row, size_t column, cv value)
     *at = c_add(*at, c_scale_lanes(value, s->moves[row] * s->moves[column]));
 }
 
-static void fill(const struct solving *s)
+static RD_CLONES void fill(const struct solving *s)
 {
     const struct rd_space_band *b = s->band;
     const size_t each = b->parts * BLOCK;
@@ -132,7 +132,7 @@ static RD_CLONES void solve(const struct solving *s)
     }
 }
 
-static void unload(const struct solving *s, double _Complex *x)
+static RD_CLONES void unload(const struct solving *s, double _Complex *x)
 {
     for (size_t lane = 0; lane < s->here; lane++)
         for (size_t j = 0; j < s->columns; j++)
