@@ -154,9 +154,17 @@ class Factored:
 class SpaceParts(NamedTuple):
     """The parts of a component at each line, before anything stands between them."""
 
-    matrices: Complex  # (3, n, parts, width, width) D, G and Q
-    node: Index  # (pieces + 1,) where pieces begin among them
-    missed: Real  # (3, parts) what they may be off beside rounding, of the largest entries
+    matrices: Complex  # (3, n, distinct, width, width) D, G and Q
+    alike: Index  # (distinct,) how many of each lie one after another
+    node: Index  # (pieces + 1,) where pieces begin among all
+    missed: Real  # (3, distinct) what they may be off beside rounding, of the largest entries
+
+    @property
+    def every(self) -> tuple[Complex, Real]:
+        """D, G and Q of all, and what they may be off."""
+        if (self.alike == 1).all():
+            return self.matrices, self.missed
+        return self.matrices.repeat(self.alike, axis=2), self.missed.repeat(self.alike, axis=1)
 
 
 def parts_at(
@@ -165,20 +173,24 @@ def parts_at(
     """Return so many equal parts of each piece, or more, all below their resonances."""
     rates = scaled_rates(rope.rates(which, factors), z)
     size = size_of(rates).max(axis=(0, 2))
-    triples, counts = [], []
+    triples, counts, alike = [], [], []
     for p, length in enumerate(rope.length.tolist()):
         one = np.ascontiguousarray(coefficients(rates[:, p]))
         halved = int(halvings(max(size[p] * length, rope.least_radians[p]) / equal))
         triple, count = parts_of(one, length, equal, halved)
         triples.append(triple)
         counts.append(count)
+        alike.append([count] if triple.shape[1] == 1 else [1] * count)
         if sum(counts) > MOST_PARTS:
             raise SolveError("the waves are too short for the rope: more than 100000 parts")
     node = np.concatenate([[0], np.cumsum(counts)])
-    matrices = np.empty((3, len(rates), node[-1], *rates.shape[-2:]), np.complex128)
-    for p, (first, triple) in enumerate(zip(node[:-1], triples)):
-        matrices[:, :, first : node[p + 1]] = np.moveaxis(_spread(triple, counts[p]), 2, 0)
-    return SpaceParts(matrices, node, np.zeros((3, node[-1])))
+    matrices = np.empty((3, len(rates), sum(map(len, alike)), *rates.shape[-2:]), np.complex128)
+    first = 0
+    for triple, own in zip(triples, alike):
+        last = first + len(own)
+        matrices[:, :, first:last] = np.moveaxis(_spread(triple, len(own)), 2, 0)
+        first = last
+    return SpaceParts(matrices, np.concatenate(alike), node, np.zeros((3, last)))
 
 
 def assemble(
@@ -189,7 +201,8 @@ def assemble(
     which : (n,) or (1,) where it is the same at all n lines.
     """
     parts = parts or parts_at(rope, which, factors, z)
-    (D, G, Q), node, missed = parts
+    (D, G, Q), missed = parts.every
+    node = parts.node
     width, blocks = z.shape[1], rope.blocks
     for p in rope.kinks:
         # F R and R^T Q R of what begins with a kink

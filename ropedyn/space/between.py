@@ -25,7 +25,8 @@ class Between(NamedTuple):
 
     weight: Real  # (lines, NODES)
     values: Real  # (3, NODES, ..) real and imaginary parts beside each other, not scaled
-    shape: tuple[int, ...]  # of each three of a line, (parts, width, width)
+    shape: tuple[int, ...]  # of each three of a line, (parts, width, width), none twice
+    alike: Index
     node: Index
     missed: Real  # (3, parts) shares of the largest entries
 
@@ -44,7 +45,7 @@ class Between(NamedTuple):
         size = np.abs(values * _scales(z[-1:])).max(axis=(1, 3, 4))
         missed = np.abs(last).max(axis=(0, 3, 4)) / np.where(size > 0, size, 1.0)
         flat = values.reshape(3, NODES, -1).view(np.float64)
-        return cls(weight, flat, values.shape[2:], parts.node, missed)
+        return cls(weight, flat, values.shape[2:], parts.alike, parts.node, missed)
 
     def at(self, lines: slice, z: Real) -> SpaceParts:
         """Return the parts at some lines."""
@@ -58,7 +59,7 @@ class Between(NamedTuple):
         pairs = found.reshape(3, len(weight), -1, 2 * width**2)
         pairs *= np.repeat(_scales(z).reshape(3, len(weight), 1, -1), 2, axis=3)
         matrices = found.view(np.complex128).reshape(3, len(weight), *self.shape)
-        return SpaceParts(matrices, self.node, self.missed)
+        return SpaceParts(matrices, self.alike, self.node, self.missed)
 
 
 def _scales(z: Real) -> Real:
