@@ -102,6 +102,9 @@ enum {
 /* of the first part that is summed as a series */
 static const double RADIANS = 0.5;
 
+/* Of joints of parts that are not counted: by 1 and more once something has resonated. */
+static const double GENTLE = 0.9;
+
 /* of what no force stretches, so that its force is not left open */
 static const double COMPLIANT = 0x1p-50;
 
@@ -368,7 +371,8 @@ static void pieces_double(struct counting *c, size_t count, const double *lambda
         }
         const struct rd_space_run run = run_of(rope, p, row);
         struct triple *kept = c->kept + p * RD_LANES * RD_SPACE_NODES;
-        RD_SPACE_(family)(&run, c->many, &kept->D[0][0], c->left + p, c->room);
+        c->left[p] = run.halvings - RD_SPACE_(family)(&run, c->many, run.halvings, GENTLE,
+                                                      &kept->D[0][0], c->room);
     }
 }
 

@@ -23,3 +23,12 @@ static RD_CLONES int doubled(struct family *f, double gentle, struct triple *lon
     advance(f, count, longer);
     return 1;
 }
+
+/* as often as is gentle, so often at most; returns how often */
+static int family_double(struct family *f, int doublings, double gentle, struct triple *longer)
+{
+    int times = 0;
+    while (times < doublings && doubled(f, gentle, longer))
+        times++;
+    return times;
+}

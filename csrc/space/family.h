@@ -1,5 +1,5 @@
-/* Parts of a piece along which something changes, of WIDE coordinates and real numbers, at several
-   eigenvalues side by side: included by one source file each. */
+/* Parts of a piece of WIDE coordinates and real numbers, several lines side by side: included by one source
+   file each. */
 #include "space/width.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -30,7 +30,7 @@ RD_INLINE lanes scaled(lanes a, double s)
 }
 RD_INLINE lanes over(lanes a)
 {
-    return 1.0 / a;
+    return a * (1.0 / (a * a)); /* as of a complex number */
 }
 RD_INLINE lanes size(lanes a)
 {
@@ -76,24 +76,20 @@ RD_INLINE void exchange(lanes *a, lanes *b, lane_mask m)
 
 #include "space/doubling.h"
 
-/* Of joints: by 1 and more once something has resonated. */
-static const double GENTLE = 0.9;
-
-void RD_SPACE_(family)(const struct rd_space_run *run, const lanes *E, double *at, int *left,
-                       lanes *work)
+int RD_SPACE_(family)(const struct rd_space_run *run, const lanes *E, int doublings, double gentle,
+                      double *at, lanes *work)
 {
     struct triple *own = (struct triple *)work;
     struct family f;
     struct rates summed;
     family_begin(run, own, &f);
     family_fill(run, E, &summed, &f);
-    while (f.left > 0 && doubled(&f, GENTLE, own + RD_SPACE_NODES))
-        ;
-    *left = f.left;
+    const int times = family_double(&f, doublings, gentle, own + RD_SPACE_NODES);
     for (size_t k = 0; k < (size_t)f.count; k++) {
         const lanes *from = &own[k].D[0][0];
         for (size_t i = 0; i < TRIPLE; i++)
             for (size_t lane = 0; lane < RD_LANES; lane++)
                 at[(lane * RD_SPACE_NODES + k) * TRIPLE + i] = from[i][lane];
     }
+    return times;
 }

@@ -91,15 +91,51 @@ static void family_write(const struct family *f, size_t nodes, size_t lines, dou
     }
 }
 
-/* lines beyond the last are that once more */
-static void lines_load(const double _Complex *from, size_t size, size_t lines, cv *to)
+/* lines beyond the last are that once more; whether all are real */
+static int lines_load(const double _Complex *from, size_t size, size_t lines, cv *to)
 {
+    int real = 1;
     for (size_t i = 0; i < size; i++)
         for (size_t lane = 0; lane < RD_LANES; lane++) {
             const double _Complex x = from[(lane < lines ? lane : lines - 1) * size + i];
             to[i].re[lane] = creal(x);
             to[i].im[lane] = cimag(x);
+            real &= cimag(x) == 0;
         }
+    return real;
+}
+
+struct parts {
+    size_t own; /* numbers of a line */
+    cv *E;
+    struct rates *rates;
+    struct triple *at; /* (2, RD_SPACE_NODES) */
+    lanes *real;       /* E of real lines, their parts and the room of these */
+};
+
+/* of up to RD_LANES lines, to (lines, nodes, 3, WIDE, WIDE); returns how often they are doubled */
+static int parts_fill(const struct parts *p, const struct rd_space_run *run, size_t lines,
+                      const double _Complex *rates, int doublings, double gentle,
+                      double _Complex *to)
+{
+    const size_t nodes = (size_t)run->nodes, all = RD_SPACE_NODES * TRIPLE;
+    struct family f;
+    if (!lines_load(rates, p->own, lines, p->E)) {
+        family_begin(run, p->at, &f);
+        family_fill(run, p->E, p->rates, &f);
+        const int times = family_double(&f, doublings, gentle, p->at + RD_SPACE_NODES);
+        family_write(&f, nodes, lines, to);
+        return times;
+    }
+    lanes *own = p->real, *room = own + p->own;
+    double *at = (double *)(room + rd_space_family_room(WIDE));
+    for (size_t i = 0; i < p->own; i++)
+        own[i] = p->E[i].re;
+    const int times = RD_SPACE_(family)(run, own, doublings, gentle, at, room);
+    for (size_t line = 0; line < lines; line++)
+        for (size_t i = 0; i < nodes * TRIPLE; i++)
+            to[line * nodes * TRIPLE + i] = at[line * all + i];
+    return times;
 }
 
 enum rd_status RD_SPACE_(triples)(const struct rd_space_run *run, size_t lines,
@@ -107,29 +143,25 @@ enum rd_status RD_SPACE_(triples)(const struct rd_space_run *run, size_t lines,
                                   double _Complex *triple, int *reached, int *whole,
                                   struct rd_workspace *workspace)
 {
-    const size_t own = run->fields * TRIPLE;
-    cv *E = rd_take_aligned(workspace, own, sizeof *E, sizeof(lanes));
-    struct rates *summed = rd_take_aligned(workspace, 1, sizeof *summed, sizeof(lanes));
-    struct triple *at = rd_take_aligned(workspace, 2 * RD_SPACE_NODES, sizeof *at, sizeof(lanes));
-    struct family f;
+    const size_t own = run->fields * TRIPLE, nodes = (size_t)run->nodes;
+    const size_t room = own + rd_space_family_room(WIDE) + RD_SPACE_NODES * TRIPLE;
+    struct parts parts = {.own = own};
+    parts.E = rd_take_aligned(workspace, own, sizeof *parts.E, sizeof(lanes));
+    parts.rates = rd_take_aligned(workspace, 1, sizeof *parts.rates, sizeof(lanes));
+    parts.at = rd_take_aligned(workspace, 2 * RD_SPACE_NODES, sizeof *parts.at, sizeof(lanes));
+    parts.real = rd_take_aligned(workspace, room, sizeof *parts.real, sizeof(lanes));
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
     *reached = doublings;
     *whole = 1;
-    const size_t nodes = (size_t)run->nodes;
     /* from the last line on, which is mostly that of the shortest waves: what it reaches all do */
     for (size_t batch = (lines + RD_LANES - 1) / RD_LANES; workspace->base && batch-- > 0;) {
         const size_t k = batch * RD_LANES;
         const size_t here = lines - k < RD_LANES ? lines - k : RD_LANES;
-        int times = 0;
-        lines_load(rates + k * own, own, here, E);
-        family_begin(run, at, &f);
-        family_fill(run, E, summed, &f);
-        while (times < *reached && doubled(&f, gentle, at + RD_SPACE_NODES))
-            times++;
+        const int times = parts_fill(&parts, run, here, rates + k * own, *reached, gentle,
+                                     triple + k * nodes * TRIPLE);
         *whole &= times == *reached || k + here == lines;
         *reached = times;
-        family_write(&f, nodes, here, triple + k * nodes * TRIPLE);
     }
     return RD_OK;
 }

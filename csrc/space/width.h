@@ -20,11 +20,11 @@ typedef enum rd_status rd_space_count_of(const struct rd_space *rope, size_t cou
                                          const double *z, double *below,
                                          struct rd_workspace *workspace);
 
-/* What the parts of a piece are, doubled while no joint comes near a resonance of any, at RD_LANES
-   eigenvalues: E (fields, 3, width, width, RD_LANES) of the series' fields, at (RD_LANES, RD_SPACE_NODES, 3,
-   width, width), of which *left halvings say how far; work of rd_space_family_room(width) lanes. */
-typedef void rd_space_family_of(const struct rd_space_run *run, const lanes *E, double *at,
-                                int *left, lanes *work);
+/* The parts of a piece at RD_LANES real lines: E (fields, 3, width, width, RD_LANES) of the series' fields,
+   at (RD_LANES, RD_SPACE_NODES, 3, width, width), doubled as rd_space_triples does. Returns how often; work of
+   rd_space_family_room(width) lanes. */
+typedef int rd_space_family_of(const struct rd_space_run *run, const lanes *E, int doublings,
+                               double gentle, double *at, lanes *work);
 
 static inline size_t rd_space_family_room(size_t width)
 {
