@@ -47,6 +47,13 @@ RD_INLINE void put(const struct solving *s, size_t row, size_t column, cv value)
     *at = c_add(*at, c_scale_lanes(value, s->moves[row] * s->moves[column]));
 }
 
+/* at (row, column) and at (column, row), where nothing is */
+RD_INLINE void put_both(const struct solving *s, size_t row, size_t column, cv value)
+{
+    const cv own = c_scale_lanes(value, s->moves[row] * s->moves[column]);
+    *entry(s, row, column) = *entry(s, column, row) = own;
+}
+
 static RD_CLONES void fill(const struct solving *s)
 {
     const struct rd_space_band *b = s->band;
@@ -62,19 +69,17 @@ static RD_CLONES void fill(const struct solving *s)
         for (size_t i = 0; i < WIDE; i++)
             for (size_t j = 0; j < WIDE; j++) {
                 const size_t at = p * BLOCK + i * WIDE + j;
-                put(s, u + i, u + j, loaded(s, b->N, each + BLOCK, at));
-                if (p == b->parts)
+                const cv N = loaded(s, b->N, each + BLOCK, at);
+                if (p == b->parts) {
+                    put(s, u + i, u + j, N);
                     continue;
-                const cv unit = c_real(i == j ? -1 : 0);
-                const cv F = c_sub(unit, loaded(s, b->D, each, at));
-                put(s, u + i, u + j, loaded(s, b->Q, each, at));
-                put(s, f + i, u + j, F);
-                put(s, u + j, f + i, F);
-                put(s, f + i, f + j, c_neg(loaded(s, b->G, each, at)));
-                if (i == j) {
-                    put(s, f + i, f + WIDE + i, c_real(1));
-                    put(s, f + WIDE + i, f + i, c_real(1));
                 }
+                const cv unit = c_real(i == j ? -1 : 0);
+                put(s, u + i, u + j, c_add(N, loaded(s, b->Q, each, at)));
+                put_both(s, f + i, u + j, c_sub(unit, loaded(s, b->D, each, at)));
+                put(s, f + i, f + j, c_neg(loaded(s, b->G, each, at)));
+                if (i == j)
+                    put_both(s, f + i, f + WIDE + i, c_real(1));
             }
     }
 }
