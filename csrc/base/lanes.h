@@ -121,4 +121,19 @@ RD_INLINE lane_mask l_not_below(lanes a, lanes b)
     return mask;
 }
 
+/* whether a bit is set in any lane */
+RD_INLINE int l_any(lane_mask m)
+{
+    typedef long long half_mask __attribute__((vector_size(4 * RD_LANES)));
+    half_mask half[2];
+    __builtin_memcpy(half, &m, sizeof m);
+    half[0] |= half[1];
+    return (half[0][0] | half[0][1] | half[0][2] | half[0][3]) != 0;
+}
+
+RD_INLINE int c_is_zero(cv a)
+{
+    return !l_any(((lane_mask)a.re | (lane_mask)a.im) << 1);
+}
+
 #endif

@@ -76,10 +76,7 @@ PyObject *py_space_triples(PyObject *module, PyObject *arguments)
         goto done;
     if (doublings > run.halvings && run.nodes > 1)
         doublings = run.halvings;
-    /* nobody has room for more than are shifted out of sight */
-    const int left = run.halvings - doublings < 40 ? run.halvings - doublings : 40;
-    const npy_intp parts = run.nodes == 1 ? 1 : (npy_intp)run.equal << left;
-    triple = py_new(NPY_CDOUBLE, 5, (npy_intp[]){lines, parts, 3, width, width});
+    triple = py_new(NPY_CDOUBLE, 5, (npy_intp[]){lines, run.nodes, 3, width, width});
     if (triple == NULL)
         goto done;
     double _Complex *to = PyArray_DATA((PyArrayObject *)triple);

@@ -58,6 +58,14 @@ RD_INLINE double lesser_size(double a, double b)
 {
     return a < b ? a : b;
 }
+RD_INLINE double sizes(double a)
+{
+    return fabs(a);
+}
+RD_INLINE int exceeds(double a, double b, double share)
+{
+    return fabs(a) > share * fabs(b);
+}
 RD_INLINE int is_zero(double a)
 {
     return a == 0;
@@ -85,8 +93,8 @@ enum {
     PAIR = 2 * WIDE,              /* unknowns of a joint */
     WORK = 64 * ALL,              /* of LAPACK */
     ODD = 9,                      /* first divisions of a piece that are tried, 1, 3 .. */
-    GRADED = 4096,                /* parts of a piece along which tension or curvature change */
-    TRIED = 2,                    /* rooms of families: of the best and of the next */
+    HALVED = 12,                  /* times at most a piece that changes is left */
+    TRIED = 2,                    /* divisions of a piece: the best and the next */
     INNER = -1,                   /* a node that nothing stands at */
     MOST_HALVINGS = 60,
 };
@@ -94,8 +102,8 @@ enum {
 /* of the first part that is summed as a series */
 static const double RADIANS = 0.5;
 
-/* of joints of parts that are interpolated from others: far from the resonances of any */
-static const double STEADY = 4;
+/* Of joints of parts that are not counted: by 1 and more once something has resonated. */
+static const double GENTLE = 0.9;
 
 /* of what no force stretches, so that its force is not left open */
 static const double COMPLIANT = 0x1p-50;
@@ -107,8 +115,13 @@ struct counting {
     size_t parts;        /* so far, the last of which grows */
     double below;        /* eigenvalues of each part, its left end held */
     struct triple *part; /* (PARTS) */
-    struct triple *room; /* (TRIED + 1, RD_SPACE_NODES) of families */
+    struct triple one[TRIED];
     double *E;           /* (fields, 3, 6, 6) of the piece, scaled */
+    struct triple *kept; /* (pieces, RD_LANES, RD_SPACE_NODES) of pieces that change */
+    int *left;           /* (pieces) halvings of these */
+    size_t lane;         /* whose they are */
+    lanes *many;         /* (fields, 3, 6, 6), E of all lanes */
+    lanes *room;         /* of their doublings */
     int node[PARTS];     /* on the left of each */
     double *A;           /* (ALL, ALL) */
     double *work;        /* (WORK) */
@@ -231,26 +244,16 @@ static int is_held(const struct rd_space *rope, size_t node)
     return any;
 }
 
-/* One doubling of all parts while their joints are gentle; *below are the eigenvalues of each that are
-   alike, or of all that lie one after another. Between nodes of a polynomial no part may have any. */
+/* One doubling of parts that are alike, while their joints are gentle; *below are the eigenvalues of each. */
 static int doubled(struct counting *c, struct family *f, double *below)
 {
     const double nothing[WIDE * WIDE] = {0};
-    struct triple *longer = c->room, one, two;
-    const int count = next_count(f), alike = f->count == 1;
-    double more = 0;
-    for (int i = 0; i < count; i++) {
-        pair(f, i, &one, &two);
-        /* at a resonance there is no joint, but numbers that are none */
-        if (!(join(&one, &two, NULL, longer + i).largest <= (f->poly ? STEADY : c->gentle)))
-            return 0;
-        const int here = joint(c, &one, &two, nothing);
-        if (f->poly && here != 0)
-            return 0;
-        more += here;
-    }
-    *below = (alike ? 2 : 1) * *below + more;
-    advance(f, count, longer);
+    struct triple longer;
+    /* at a resonance there is no joint, but numbers that are none */
+    if (!(join(f->at, f->at, NULL, &longer).largest <= c->gentle))
+        return 0;
+    *below = 2 * *below + joint(c, f->at, f->at, nothing);
+    advance(f, 1, &longer);
     return 1;
 }
 
@@ -286,34 +289,45 @@ static int halvings_of(const struct counting *c, size_t p)
     return halved > 0 ? (int)fmin(halved, MOST_HALVINGS) : 0;
 }
 
-/* parts of one `odd`th of piece p, each of a series */
+/* one part of an `odd`th of piece p, of a series */
 static void family_fill(struct counting *c, size_t p, size_t row, int odd, struct family *f)
 {
     const struct rd_space *rope = c->rope;
-    const struct rd_space_run run = {
-        .equal = odd, .halvings = halvings_of(c, p), .nodes = rope->nodes[p]};
+    const struct rd_space_run run = {.equal = odd, .halvings = halvings_of(c, p), .nodes = 1};
     struct rates rates;
     family_begin(&run, f->at, f);
-    for (int i = 0; i < f->count; i++) {
-        const double *series = rope->series + (row + (size_t)i) * rope->fields * RD_SPACE_ORDERS;
-        rates_fill(rope->fields, c->E, series, rope->length[p] * share_of(f), &rates);
-        first(&rates, f->at + i);
-    }
+    rates_fill(1, c->E, rope->series + row * RD_SPACE_ORDERS, rope->length[p] * share_of(f),
+               &rates);
+    first(&rates, f->at);
 }
 
-/* Piece p. A joint of two halves near a resonance is that of all their equals: a piece of which one is
-   met is divided by three first, or five .., whose halves resonate elsewhere. */
+/* so many copies of what there is of piece p, each of so many eigenvalues */
+static int copies_add(struct counting *c, size_t p, const struct family *f, int copies,
+                      double below)
+{
+    struct triple t;
+    for (int k = 0; k < copies; k++) {
+        const int apart = k == 0 && (p == 0 || is_held(c->rope, p));
+        part_of(f, k, &t);
+        if (k == 0)
+            turn(c, &t, c->rope->turn + p * WIDE * WIDE);
+        if (!part_add(c, &t, below, k == 0 ? (int)p : INNER, apart))
+            return 0;
+    }
+    return 1;
+}
+
+/* Piece p, alike all along. A joint of two halves near a resonance is that of all their equals: a piece of which
+   one is met is divided by three first, or five .., whose halves resonate elsewhere. */
 static int piece_add(struct counting *c, size_t p, size_t row)
 {
-    const struct rd_space *rope = c->rope;
     struct family tried[TRIED];
     double below = 0, own;
-    const int each = rope->nodes[p] == 1, most = each ? PARTS : GRADED;
-    int copies = most + 1, best = 0;
+    int copies = PARTS + 1, best = 0;
     rates_of(c, p, c->E);
-    for (int odd = 1, left = 1; odd <= (each ? ODD : 1) && left > 0; odd += 2) {
+    for (int odd = 1, left = 1; odd <= ODD && left > 0; odd += 2) {
         struct family *f = tried + !best;
-        f->at = c->room + (size_t)(1 + !best) * RD_SPACE_NODES;
+        f->at = c->one + !best;
         own = 0;
         family_fill(c, p, row, odd, f);
         while (f->left > 0 && doubled(c, f, &own))
@@ -325,18 +339,53 @@ static int piece_add(struct counting *c, size_t p, size_t row)
         best = !best;
         below = own;
     }
-    if (copies > most)
-        return 0;
-    struct triple t;
-    for (int k = 0; k < copies; k++) {
-        const int apart = k == 0 && (p == 0 || is_held(rope, p));
-        part_of(tried + best, each ? 0 : k, &t);
-        if (k == 0)
-            turn(c, &t, rope->turn + p * WIDE * WIDE);
-        if (!part_add(c, &t, each || k == 0 ? below : 0, k == 0 ? (int)p : INNER, apart))
-            return 0;
+    return copies <= PARTS && copies_add(c, p, tried + best, copies, below);
+}
+
+/* how piece p, along which something changes, is divided and doubled */
+static struct rd_space_run run_of(const struct rd_space *rope, size_t p, size_t row)
+{
+    return (struct rd_space_run){
+        .width = WIDE,
+        .length = rope->length[p],
+        .equal = 1,
+        .halvings = rope->halvings[p],
+        .nodes = rope->nodes[p],
+        .fields = rope->fields,
+        .series = rope->series + row * rope->fields * RD_SPACE_ORDERS,
+    };
+}
+
+/* the parts of all pieces at up to RD_LANES eigenvalues: lanes beyond the last are that once more */
+static void pieces_double(struct counting *c, size_t count, const double *lambda, const double *z)
+{
+    const struct rd_space *rope = c->rope;
+    for (size_t p = 0, row = 0; p < rope->pieces; row += (size_t)rope->nodes[p], p++) {
+        for (size_t lane = 0; lane < RD_LANES; lane++) {
+            const size_t k = lane < count ? lane : count - 1;
+            c->lambda = lambda[k];
+            c->z = z + k * WIDE;
+            rates_of(c, p, c->E);
+            for (size_t i = 0; i < rope->fields * TRIPLE; i++)
+                c->many[i][lane] = c->E[i];
+        }
+        const struct rd_space_run run = run_of(rope, p, row);
+        struct triple *kept = c->kept + p * RD_LANES * RD_SPACE_NODES;
+        c->left[p] = run.halvings - RD_SPACE_(family)(&run, c->many, run.halvings, GENTLE,
+                                                      &kept->D[0][0], c->room);
     }
-    return 1;
+}
+
+/* piece p, along which something changes, from what is kept of it: no part has an eigenvalue */
+static int changing_add(struct counting *c, size_t p, size_t row)
+{
+    const struct rd_space_run run = run_of(c->rope, p, row);
+    struct family f;
+    family_begin(&run, c->kept + (p * RD_LANES + c->lane) * RD_SPACE_NODES, &f);
+    f.left = c->left[p];
+    f.poly = parts_of(1, f.left) <= f.poly ? 0 : f.poly;
+    f.count = f.poly > 0 ? f.poly : parts_of(1, f.left);
+    return f.left <= HALVED && copies_add(c, p, &f, parts_of(1, f.left), 0);
 }
 
 /* A(row, column) += value, in the lower triangle */
@@ -391,7 +440,7 @@ static double count_one(struct counting *c, double lambda, double gentle)
     c->below = 0;
     size_t row = 0;
     for (size_t p = 0; p < c->rope->pieces; row += (size_t)c->rope->nodes[p], p++)
-        if (!piece_add(c, p, row))
+        if (!(c->rope->fields > 1 ? changing_add : piece_add)(c, p, row))
             return NAN;
     return parts_count(c);
 }
@@ -418,14 +467,27 @@ enum rd_status RD_SPACE_(count)(const struct rd_space *rope, size_t count, const
     struct rd_space own;
     struct counting c = {.rope = &own};
     c.part = rd_take(workspace, PARTS, sizeof *c.part);
-    c.room = rd_take(workspace, (TRIED + 1) * RD_SPACE_NODES, sizeof *c.room);
     c.E = rd_take(workspace, rope->fields * TRIPLE, sizeof *c.E);
     c.A = rd_take(workspace, (size_t)ALL * ALL, sizeof *c.A);
     c.work = rd_take(workspace, WORK, sizeof *c.work);
+    if (rope->fields > 1) {
+        c.left = rd_take(workspace, rope->pieces, sizeof *c.left);
+        c.kept = rd_take(workspace, rope->pieces * RD_LANES * RD_SPACE_NODES, sizeof *c.kept);
+        c.many = rd_take_aligned(workspace, rope->fields * TRIPLE, sizeof *c.many, sizeof(lanes));
+        c.room =
+            rd_take_aligned(workspace, rd_space_family_room(WIDE), sizeof *c.room, sizeof(lanes));
+    }
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
-    for (size_t k = 0; workspace->base && k < count; k++) {
+    for (size_t k = 0, first = 0, last = 0; workspace->base && k < count; k++) {
         own = component_of(rope, (size_t)component[k]);
+        if (rope->fields > 1 && k == last) {
+            for (first = k; last < count && last < first + RD_LANES; last++)
+                if (component[last] != component[first])
+                    break;
+            pieces_double(&c, last - first, lambda + first, z + first * WIDE);
+        }
+        c.lane = k - first;
         c.z = z + k * WIDE;
         for (int i = 0; i == 0 || (i < RD_SPACE_GENTLE && isnan(below[k])); i++)
             below[k] = count_one(&c, lambda[k], rd_space_gentle[i]);

@@ -1,6 +1,7 @@
 /* Triples of short pieces and their joints for WIDE coordinates and numbers of one type, NUM: included
    by one source file each, which has add, subtract, times, scaled, over, number(double), size(a), how large a number is,
-   is_zero, lesser_size, and for exchanges of rows EITHER with larger(a, b), any and exchange(a, b, either). */
+   is_zero, lesser_size, sizes(a), those of its parts, exceeds(a, b, share), whether a part of a does that share
+   of b's, and for exchanges of rows EITHER with larger(a, b), any and exchange(a, b, either). */
 #include "space/space.h"
 
 #include <math.h>
@@ -11,7 +12,12 @@ enum {
     TERMS = 24, /* of the series of a piece of up to half a radian, for all digits of all entries */
     STATE = 2 * WIDE,
     ENTRIES = STATE * STATE,
+    WALK = 2 * STATE, /* no walk through the entries is longer that passes one of them */
+    QUIET = 4,        /* terms one after another that change nothing: the last that do */
 };
+
+/* of a sum's largest term, what changes no digit; of entries, of the largest order */
+static const double NOTHING = 0x1p-60;
 
 struct triple {
     NUM D[WIDE][WIDE], G[WIDE][WIDE], Q[WIDE][WIDE]; /* D = F - I */
@@ -99,11 +105,12 @@ RD_INLINE void divide(NUM A[WIDE][WIDE], int n, NUM *X)
 RD_INLINE void column(const struct rates *E, int c, NUM *sum)
 {
     NUM term[TERMS + 1][STATE];
+    int quiet = 0;
     for (int i = 0; i < STATE; i++) {
         sum[i] = number(0);
         term[0][i] = number(i == c);
     }
-    for (int m = 1; m <= TERMS; m++) {
+    for (int m = 1; m <= TERMS && (m <= WALK || quiet < QUIET); m++) {
         NUM *next = term[m];
         for (int i = 0; i < STATE; i++)
             next[i] = number(0);
@@ -116,6 +123,9 @@ RD_INLINE void column(const struct rates *E, int c, NUM *sum)
             next[i] = scaled(next[i], 1.0 / m);
             sum[i] = add(sum[i], next[i]);
         }
+        quiet++;
+        for (int i = 0; m > WALK - QUIET && quiet > 0 && i < STATE; i++)
+            quiet = exceeds(next[i], sum[i], NOTHING) ? 0 : quiet;
     }
 }
 
@@ -245,15 +255,11 @@ RD_INLINE struct nearness join(const struct triple *one, const struct triple *tw
 }
 
 /* The entries of a part of the length whose left end has the series (fields, RD_SPACE_ORDERS); (fields,
-   3, 6, 6) of E_j */
+   3, 6, 6) of E_j. Orders that are nothing beside the others of their entry are none. */
 RD_INLINE void rates_fill(size_t fields, const NUM *E, const double *series, double length,
                           struct rates *rates)
 {
     rates->orders = 1;
-    for (size_t j = 0; j < fields; j++)
-        for (int k = 1; k < RD_SPACE_ORDERS; k++)
-            if (series[j * RD_SPACE_ORDERS + (size_t)k] != 0 && rates->orders <= k)
-                rates->orders = k + 1;
     memset(rates->entries, 0, sizeof rates->entries);
     for (int i = 0; i < ENTRIES; i++) {
         const int row = i / STATE, col = i % STATE, r = row % WIDE, c = col % WIDE;
@@ -261,21 +267,28 @@ RD_INLINE void rates_fill(size_t fields, const NUM *E, const double *series, dou
         const int block = row < WIDE ? (col < WIDE ? 0 : 1) : (col < WIDE ? 2 : 0);
         const int turned = row >= WIDE && col >= WIDE;
         const size_t at = (size_t)(block * WIDE * WIDE + (turned ? c * WIDE + r : r * WIDE + c));
-        int there = 0;
+        size_t there = 0; /* up to the last field that has one */
         for (size_t j = 0; j < fields; j++)
-            there |= !is_zero(E[j * TRIPLE + at]);
-        if (!there)
+            there = is_zero(E[j * TRIPLE + at]) ? there : j + 1;
+        if (there == 0)
             continue;
+        NUM sum[RD_SPACE_ORDERS], all = number(0);
         double power = turned ? -length : length;
-        for (int k = 0; k < rates->orders; k++, power *= length) {
-            NUM sum = number(0);
-            for (size_t j = 0; j < fields; j++)
-                sum = add(sum, scaled(E[j * TRIPLE + at],
-                                      power * series[j * RD_SPACE_ORDERS + (size_t)k]));
-            if (is_zero(sum))
+        for (int k = 0; k < RD_SPACE_ORDERS; k++, power *= length) {
+            sum[k] = number(0);
+            for (size_t j = 0; j < there; j++) {
+                const double own = series[j * RD_SPACE_ORDERS + (size_t)k];
+                if (own != 0)
+                    sum[k] = add(sum[k], scaled(E[j * TRIPLE + at], power * own));
+            }
+            all = add(all, sizes(sum[k]));
+        }
+        for (int k = 0; k < RD_SPACE_ORDERS; k++) {
+            if (!exceeds(sum[k], all, NOTHING))
                 continue;
+            rates->orders = rates->orders > k ? rates->orders : k + 1;
             const int at_order = rates->entries[k]++;
-            rates->value[k][at_order] = sum;
+            rates->value[k][at_order] = sum[k];
             rates->row[k][at_order] = (unsigned char)row;
             rates->column[k][at_order] = (unsigned char)col;
         }

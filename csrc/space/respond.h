@@ -47,7 +47,14 @@ RD_INLINE void put(const struct solving *s, size_t row, size_t column, cv value)
     *at = c_add(*at, c_scale_lanes(value, s->moves[row] * s->moves[column]));
 }
 
-static void fill(const struct solving *s)
+/* at (row, column) and at (column, row), where nothing is */
+RD_INLINE void put_both(const struct solving *s, size_t row, size_t column, cv value)
+{
+    const cv own = c_scale_lanes(value, s->moves[row] * s->moves[column]);
+    *entry(s, row, column) = *entry(s, column, row) = own;
+}
+
+static RD_CLONES void fill(const struct solving *s)
 {
     const struct rd_space_band *b = s->band;
     const size_t each = b->parts * BLOCK;
@@ -62,29 +69,19 @@ static void fill(const struct solving *s)
         for (size_t i = 0; i < WIDE; i++)
             for (size_t j = 0; j < WIDE; j++) {
                 const size_t at = p * BLOCK + i * WIDE + j;
-                put(s, u + i, u + j, loaded(s, b->N, each + BLOCK, at));
-                if (p == b->parts)
+                const cv N = loaded(s, b->N, each + BLOCK, at);
+                if (p == b->parts) {
+                    put(s, u + i, u + j, N);
                     continue;
-                const cv unit = c_real(i == j ? -1 : 0);
-                const cv F = c_sub(unit, loaded(s, b->D, each, at));
-                put(s, u + i, u + j, loaded(s, b->Q, each, at));
-                put(s, f + i, u + j, F);
-                put(s, u + j, f + i, F);
-                put(s, f + i, f + j, c_neg(loaded(s, b->G, each, at)));
-                if (i == j) {
-                    put(s, f + i, f + WIDE + i, c_real(1));
-                    put(s, f + WIDE + i, f + i, c_real(1));
                 }
+                const cv unit = c_real(i == j ? -1 : 0);
+                put(s, u + i, u + j, c_add(N, loaded(s, b->Q, each, at)));
+                put_both(s, f + i, u + j, c_sub(unit, loaded(s, b->D, each, at)));
+                put(s, f + i, f + j, c_neg(loaded(s, b->G, each, at)));
+                if (i == j)
+                    put_both(s, f + i, f + WIDE + i, c_real(1));
             }
     }
-}
-
-RD_INLINE int any(lane_mask m)
-{
-    long long either = 0;
-    for (int i = 0; i < RD_LANES; i++)
-        either |= m[i];
-    return either != 0;
 }
 
 RD_INLINE void exchange(cv *a, cv *b, lane_mask m)
@@ -102,8 +99,8 @@ RD_INLINE void eliminate(const struct solving *s, size_t k)
     cv *own = entry(s, k, k);
     for (size_t i = k + 1; i <= last; i++) {
         cv *row = entry(s, i, k);
-        const lane_mask swap = (lane_mask)(c_size(row[0]) > c_size(own[0]));
-        if (!any(swap))
+        const lane_mask swap = l_above(c_size(row[0]), c_size(own[0]));
+        if (!l_any(swap))
             continue;
         for (size_t j = 0; j <= end - k; j++)
             exchange(own + j, row + j, swap);
@@ -113,7 +110,7 @@ RD_INLINE void eliminate(const struct solving *s, size_t k)
     own[0] = c_inverse(own[0]);
     for (size_t i = k + 1; i <= last; i++) {
         cv *row = entry(s, i, k);
-        if (!any((lane_mask)((row[0].re != 0.0) | (row[0].im != 0.0))))
+        if (c_is_zero(row[0]))
             continue;
         const cv by = c_mul(row[0], own[0]);
         for (size_t j = 1; j <= end - k; j++)
@@ -140,7 +137,7 @@ static RD_CLONES void solve(const struct solving *s)
     }
 }
 
-static void unload(const struct solving *s, double _Complex *x)
+static RD_CLONES void unload(const struct solving *s, double _Complex *x)
 {
     for (size_t lane = 0; lane < s->here; lane++)
         for (size_t j = 0; j < s->columns; j++)

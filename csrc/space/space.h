@@ -79,9 +79,9 @@ struct rd_space {
 
 /* The parts of a piece at `lines` (lines, fields, 3, width, width) = Phi, S, q of each field, doubled
    `doublings` times or, earlier, while no joint's (I + G Q)^-1 is farther from I than `gentle`: *reached says
-   how often. triple (lines, parts, 3, width, width), parts = equal 2^(halvings - doublings) or 1 where they are
-   alike: D = F - I, G, Q; of use only where *whole says that each was doubled *reached times, which are
-   `doublings` where they are not alike. Takes what it needs from the
+   how often. triple (lines, nodes, 3, width, width): D = F - I, G, Q of the one that all are, of the first nodes
+   where there are no more than these, or about the nodes; of use only where *whole says that each was
+   doubled *reached times. Takes what it needs from the
    workspace (with base NULL: counts it). RD_NO_MEMORY where that is too small. */
 enum rd_status rd_space_triples(const struct rd_space_run *run, size_t lines,
                                 const double _Complex *rates, int doublings, double gentle,

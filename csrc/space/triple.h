@@ -42,26 +42,32 @@ RD_INLINE lanes size(cv a)
 /* NAN where one is */
 RD_INLINE lanes larger_size(lanes a, lanes b)
 {
-    return l_select((a > b) | (a != a), a, b);
+    return l_select(l_above(a, b) | ~l_not_below(a, a), a, b);
 }
 RD_INLINE lanes lesser_size(lanes a, lanes b)
 {
-    return l_select(a > b, b, a);
+    return l_select(l_above(a, b), b, a);
 }
 RD_INLINE int any(lane_mask m)
 {
-    long long either = 0;
-    for (int i = 0; i < RD_LANES; i++)
-        either |= m[i];
-    return either != 0;
+    return l_any(m);
 }
 RD_INLINE int is_zero(cv a)
 {
-    return !any((lane_mask)((a.re != 0.0) | (a.im != 0.0)));
+    return c_is_zero(a);
+}
+RD_INLINE cv sizes(cv a)
+{
+    return (cv){l_abs(a.re), l_abs(a.im)};
+}
+RD_INLINE int exceeds(cv a, cv b, double share)
+{
+    const cv most = c_scale(b, share);
+    return l_any(l_above(l_abs(a.re), l_abs(most.re)) | l_above(l_abs(a.im), l_abs(most.im)));
 }
 RD_INLINE lane_mask larger(cv a, cv b)
 {
-    return (lane_mask)(c_size(a) > c_size(b));
+    return l_above(c_size(a), c_size(b));
 }
 RD_INLINE void exchange(cv *a, cv *b, lane_mask m)
 {
@@ -72,52 +78,64 @@ RD_INLINE void exchange(cv *a, cv *b, lane_mask m)
 
 #include "space/kernel.h"
 
-static RD_CLONES void family_fill(const struct rd_space_run *run, const cv *E, struct rates *rates,
-                                  struct family *f)
-{
-    for (int i = 0; i < f->count; i++) {
-        const double *series = run->series + (size_t)i * run->fields * RD_SPACE_ORDERS;
-        rates_fill(run->fields, E, series, run->length * share_of(f), rates);
-        first(rates, f->at + i);
-    }
-}
+#include "space/doubling.h"
 
-/* one doubling of all parts, unless one of their joints is farther from none than is gentle */
-static RD_CLONES int doubled(struct family *f, double gentle, struct triple *longer)
+/* the parts that are kept of lines, (lines, nodes, 3, WIDE, WIDE) */
+static void family_write(const struct family *f, size_t nodes, size_t lines, double _Complex *to)
 {
-    const int count = next_count(f);
-    for (int i = 0; i < count; i++) {
-        struct triple one, two;
-        pair(f, i, &one, &two);
-        if (any((lane_mask) ~(join(&one, &two, NULL, longer + i).away <= gentle)))
-            return 0;
-    }
-    advance(f, count, longer);
-    return 1;
-}
-
-static RD_CLONES void parts_write(const struct family *f, size_t parts, size_t lines,
-                                  double _Complex *to)
-{
-    struct triple t;
-    for (size_t k = 0; k < parts; k++) {
-        part_of(f, (int)k, &t);
-        const cv *from = &t.D[0][0];
+    for (size_t k = 0; k < (size_t)f->count; k++) {
+        const cv *from = &f->at[k].D[0][0];
         for (size_t i = 0; i < TRIPLE; i++)
             for (size_t line = 0; line < lines; line++)
-                to[(line * parts + k) * TRIPLE + i] = CMPLX(from[i].re[line], from[i].im[line]);
+                to[(line * nodes + k) * TRIPLE + i] = CMPLX(from[i].re[line], from[i].im[line]);
     }
 }
 
-/* lines beyond the last are that once more */
-static void lines_load(const double _Complex *from, size_t size, size_t lines, cv *to)
+/* lines beyond the last are that once more; whether all are real */
+static int lines_load(const double _Complex *from, size_t size, size_t lines, cv *to)
 {
+    int real = 1;
     for (size_t i = 0; i < size; i++)
         for (size_t lane = 0; lane < RD_LANES; lane++) {
             const double _Complex x = from[(lane < lines ? lane : lines - 1) * size + i];
             to[i].re[lane] = creal(x);
             to[i].im[lane] = cimag(x);
+            real &= cimag(x) == 0;
         }
+    return real;
+}
+
+struct parts {
+    size_t own; /* numbers of a line */
+    cv *E;
+    struct rates *rates;
+    struct triple *at; /* (2, RD_SPACE_NODES) */
+    lanes *real;       /* E of real lines, their parts and the room of these */
+};
+
+/* of up to RD_LANES lines, to (lines, nodes, 3, WIDE, WIDE); returns how often they are doubled */
+static int parts_fill(const struct parts *p, const struct rd_space_run *run, size_t lines,
+                      const double _Complex *rates, int doublings, double gentle,
+                      double _Complex *to)
+{
+    const size_t nodes = (size_t)run->nodes, all = RD_SPACE_NODES * TRIPLE;
+    struct family f;
+    if (!lines_load(rates, p->own, lines, p->E)) {
+        family_begin(run, p->at, &f);
+        family_fill(run, p->E, p->rates, &f);
+        const int times = family_double(&f, doublings, gentle, p->at + RD_SPACE_NODES);
+        family_write(&f, nodes, lines, to);
+        return times;
+    }
+    lanes *own = p->real, *room = own + p->own;
+    double *at = (double *)(room + rd_space_family_room(WIDE));
+    for (size_t i = 0; i < p->own; i++)
+        own[i] = p->E[i].re;
+    const int times = RD_SPACE_(family)(run, own, doublings, gentle, at, room);
+    for (size_t line = 0; line < lines; line++)
+        for (size_t i = 0; i < nodes * TRIPLE; i++)
+            to[line * nodes * TRIPLE + i] = at[line * all + i];
+    return times;
 }
 
 enum rd_status RD_SPACE_(triples)(const struct rd_space_run *run, size_t lines,
@@ -125,31 +143,25 @@ enum rd_status RD_SPACE_(triples)(const struct rd_space_run *run, size_t lines,
                                   double _Complex *triple, int *reached, int *whole,
                                   struct rd_workspace *workspace)
 {
-    const size_t own = run->fields * TRIPLE;
-    cv *E = rd_take_aligned(workspace, own, sizeof *E, sizeof(lanes));
-    struct rates *summed = rd_take_aligned(workspace, 1, sizeof *summed, sizeof(lanes));
-    struct triple *at = rd_take_aligned(workspace, 2 * RD_SPACE_NODES, sizeof *at, sizeof(lanes));
-    struct family f;
+    const size_t own = run->fields * TRIPLE, nodes = (size_t)run->nodes;
+    const size_t room = own + rd_space_family_room(WIDE) + RD_SPACE_NODES * TRIPLE;
+    struct parts parts = {.own = own};
+    parts.E = rd_take_aligned(workspace, own, sizeof *parts.E, sizeof(lanes));
+    parts.rates = rd_take_aligned(workspace, 1, sizeof *parts.rates, sizeof(lanes));
+    parts.at = rd_take_aligned(workspace, 2 * RD_SPACE_NODES, sizeof *parts.at, sizeof(lanes));
+    parts.real = rd_take_aligned(workspace, room, sizeof *parts.real, sizeof(lanes));
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
     *reached = doublings;
     *whole = 1;
-    const size_t parts = run->nodes == 1 ? 1 : (size_t)run->equal << (run->halvings - doublings);
     /* from the last line on, which is mostly that of the shortest waves: what it reaches all do */
     for (size_t batch = (lines + RD_LANES - 1) / RD_LANES; workspace->base && batch-- > 0;) {
         const size_t k = batch * RD_LANES;
         const size_t here = lines - k < RD_LANES ? lines - k : RD_LANES;
-        int times = 0;
-        lines_load(rates + k * own, own, here, E);
-        family_begin(run, at, &f);
-        family_fill(run, E, summed, &f);
-        while (times < *reached && doubled(&f, gentle, at + RD_SPACE_NODES))
-            times++;
+        const int times = parts_fill(&parts, run, here, rates + k * own, *reached, gentle,
+                                     triple + k * nodes * TRIPLE);
         *whole &= times == *reached || k + here == lines;
         *reached = times;
-        *whole &= run->nodes == 1 || times == doublings;
-        if (run->nodes == 1 || times == doublings)
-            parts_write(&f, parts, here, triple + k * parts * TRIPLE);
     }
     return RD_OK;
 }

@@ -25,6 +25,8 @@ from .modes import Modes, UndampedVectors
 from .sensitivity import Sensitivity, Shapes, clusters_of
 from .spectrum import ComponentModes, merged, pieces_of
 
+RADIANS = 1.2  # Of a piece, below the first resonance of a cantilever, of pi/2.
+
 UNSEEN = 1e-8
 """Less than this part of the largest component at all points is rounding at nodes of a mode."""
 
@@ -54,7 +56,21 @@ def _most_pieces(model: Compiled, eigenvalue: Real) -> int:
 
 def _pieces(model: Compiled, element: Chain, eigenvalue: float) -> int:
     """Return how many pieces shorter than its waves an element has."""
-    return max((pieces_of(element.only(c), eigenvalue) for c in model.components), default=1)
+    parts = (element.only(c) for c in model.components)
+    return max((_waves(p, eigenvalue) or pieces_of(p, eigenvalue) for p in parts), default=1)
+
+
+def _waves(beam: Chain, eigenvalue: float) -> int:
+    """Return how many pieces the shortest wave of a beam whose tension grows has, 0 of others."""
+    # steps of these are pieces and the joints that make them, by halves
+    if beam.rise is None or not beam.rise[0] or beam.inertia is None or len(beam.coordinate) < 2:
+        return 0
+    load, turn = eigenvalue * beam.inertia[0]
+    stiffness = 1 / beam.flexibility[0, 2, 2]
+    half = (beam.tension[0] - abs(beam.rise[0]) / 2 - turn) / 2
+    root = math.hypot(half, math.sqrt(load * stiffness))
+    square = load / (root + half) if half > 0 else (root - half) / stiffness
+    return math.ceil(beam.length[0] * math.sqrt(square) / RADIANS)
 
 
 def points_for(model: Compiled, eigenvalue: Real) -> int:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..base.array import Complex, Flags, Index, Real
+from ..base.chebyshev import weights
 from ..base.computed import computed
 from ..base.errors import SolveError
 from .rope import Carried, Factors, SpaceRope, halvings, scaled_rates, size_of
@@ -153,9 +154,17 @@ class Factored:
 class SpaceParts(NamedTuple):
     """The parts of a component at each line, before anything stands between them."""
 
-    matrices: Complex  # (3, n, parts, width, width) D, G and Q
-    node: Index  # (pieces + 1,) where pieces begin among them
-    missed: Real  # (3, parts) what they may be off beside rounding, of the largest entries
+    matrices: Complex  # (3, n, distinct, width, width) D, G and Q
+    alike: Index  # (distinct,) how many of each lie one after another
+    node: Index  # (pieces + 1,) where pieces begin among all
+    missed: Real  # (3, distinct) what they may be off beside rounding, of the largest entries
+
+    @property
+    def every(self) -> tuple[Complex, Real]:
+        """D, G and Q of all, and what they may be off."""
+        if (self.alike == 1).all():
+            return self.matrices, self.missed
+        return self.matrices.repeat(self.alike, axis=2), self.missed.repeat(self.alike, axis=1)
 
 
 def parts_at(
@@ -164,21 +173,24 @@ def parts_at(
     """Return so many equal parts of each piece, or more, all below their resonances."""
     rates = scaled_rates(rope.rates(which, factors), z)
     size = size_of(rates).max(axis=(0, 2))
-    triples, counts = [], []
+    triples, counts, alike = [], [], []
     for p, length in enumerate(rope.length.tolist()):
         one = np.ascontiguousarray(coefficients(rates[:, p]))
         halved = int(halvings(max(size[p] * length, rope.least_radians[p]) / equal))
-        triple, alike = parts_of(one, length, equal, halved)
+        triple, count = parts_of(one, length, equal, halved)
         triples.append(triple)
-        counts.append(alike * triple.shape[1])
+        counts.append(count)
+        alike.append([count] if triple.shape[1] == 1 else [1] * count)
         if sum(counts) > MOST_PARTS:
             raise SolveError("the waves are too short for the rope: more than 100000 parts")
     node = np.concatenate([[0], np.cumsum(counts)])
-    matrices = np.empty((3, len(rates), node[-1], *rates.shape[-2:]), np.complex128)
-    for p, (first, triple) in enumerate(zip(node[:-1], triples)):
-        # parts that are alike are one, or all that lie one after another are there
-        matrices[:, :, first : node[p + 1]] = np.moveaxis(triple, 2, 0)
-    return SpaceParts(matrices, node, np.zeros((3, node[-1])))
+    matrices = np.empty((3, len(rates), sum(map(len, alike)), *rates.shape[-2:]), np.complex128)
+    first = 0
+    for triple, own in zip(triples, alike):
+        last = first + len(own)
+        matrices[:, :, first:last] = np.moveaxis(_spread(triple, len(own)), 2, 0)
+        first = last
+    return SpaceParts(matrices, np.concatenate(alike), node, np.zeros((3, last)))
 
 
 def assemble(
@@ -189,7 +201,8 @@ def assemble(
     which : (n,) or (1,) where it is the same at all n lines.
     """
     parts = parts or parts_at(rope, which, factors, z)
-    (D, G, Q), node, missed = parts
+    (D, G, Q), missed = parts.every
+    node = parts.node
     width, blocks = z.shape[1], rope.blocks
     for p in rope.kinks:
         # F R and R^T Q R of what begins with a kink
@@ -274,12 +287,18 @@ class LoadedFields(NamedTuple):
         """
         x = system.together(self.u, self.f)
         with np.errstate(all="ignore"):
-            far = ~(np.abs(x).max(1) <= FAR * np.abs(right).max(1))
+            far = ~(_largest(x) <= FAR * _largest(right))
             if far.any():
                 # the work of the loads, and what rounding does to it
                 off = np.diagonal(bound(system, self, self), axis1=1, axis2=2)
                 far &= ~(off < np.abs((x * right).sum(1)))
         return np.asarray(far.any(1))
+
+
+def _largest(x: Complex) -> Real:
+    """Return the largest real or imaginary parts of columns (n, rows, columns)."""
+    columns = np.ascontiguousarray(x.swapaxes(1, 2))
+    return np.asarray(np.abs(columns.view(np.float64)).max(2))
 
 
 def bound(system: Assembly, one: LoadedFields, other: LoadedFields) -> Real:
@@ -298,17 +317,25 @@ def bound(system: Assembly, one: LoadedFields, other: LoadedFields) -> Real:
 
 
 def parts_of(rates: Complex, length: float, equal: int, halved: int) -> tuple[Complex, int]:
-    """Return triples (n, parts, 3, width, width) of a piece, and of how many each is one.
+    """Return triples (n, nodes, 3, width, width) of a piece, and how many parts they tell.
 
     They are so many equal ones, or halves and quarters of these where those are not below their own
     resonances.
     """
-    series = series_of(length, halved, rates.shape[1], equal)
-    most = halved
-    while True:
+    series, reached, whole = series_of(length, halved, rates.shape[1], equal), halved, False
+    while not whole:
         triple, reached, whole = _core.space_triples(
-            rates, series, length, equal, halved, most, GENTLE
+            rates, series, length, equal, halved, int(reached), GENTLE
         )
-        if whole:
-            return triple, equal << (halved - reached) if len(series) == 1 else 1
-        most = int(reached)
+    return triple, equal << (halved - reached)
+
+
+def _spread(triple: Complex, count: int) -> Complex:
+    """Return so many parts, one or those that triples tell: the only one, these, or about nodes."""
+    nodes = triple.shape[1]
+    if nodes == 1 or count <= nodes:
+        return triple[:, :count]
+    # from the last node on, which is the left one
+    places = weights(nodes, np.linspace(0.0, 1.0, count))[:, ::-1]
+    found = places @ triple.reshape(len(triple), nodes, -1).view(np.float64)
+    return np.asarray(found).view(np.complex128).reshape(len(triple), count, *triple.shape[2:])

@@ -24,8 +24,9 @@ class Between(NamedTuple):
     """Parts of a component at the lines of a band."""
 
     weight: Real  # (lines, NODES)
-    values: Real  # (NODES, ..) real and imaginary parts beside each other, not scaled
-    shape: tuple[int, ...]  # of the matrices of a line
+    values: Real  # (3, NODES, ..) real and imaginary parts beside each other, not scaled
+    shape: tuple[int, ...]  # of each three of a line, (parts, width, width), none twice
+    alike: Index
     node: Index
     missed: Real  # (3, parts) shares of the largest entries
 
@@ -38,21 +39,27 @@ class Between(NamedTuple):
         factors = factors_at(nodes)
         z = rope.scale(which, np.abs(factors.inertia))
         parts = parts_at(rope, which, factors, z)
-        values = np.moveaxis(parts.matrices / _scales(z), 1, 0)
+        values = parts.matrices / _scales(z)
         # scales of lines of their own are no polynomials
-        last = np.einsum("kn,n...->k...", fitted(NODES)[-2:], values) * _scales(z[-1:])[:, 0]
-        size = np.abs(values * _scales(z[-1:])[:, 0]).max(axis=(0, 3, 4))
+        last = np.tensordot(fitted(NODES)[-2:], values, axes=(1, 1)) * _scales(z[-1:])[:, 0]
+        size = np.abs(values * _scales(z[-1:])).max(axis=(1, 3, 4))
         missed = np.abs(last).max(axis=(0, 3, 4)) / np.where(size > 0, size, 1.0)
-        flat = np.ascontiguousarray(values).reshape(NODES, -1).view(np.float64)
-        return cls(weight, flat, values.shape[1:], parts.node, missed)
+        flat = values.reshape(3, NODES, -1).view(np.float64)
+        return cls(weight, flat, values.shape[2:], parts.alike, parts.node, missed)
 
     def at(self, lines: slice, z: Real) -> SpaceParts:
         """Return the parts at some lines."""
-        weight = self.weight[lines]
-        blocks = np.array_split(self.values, -(-self.values.shape[1] // TOGETHER), axis=1)
-        values = np.concatenate([weight @ one for one in blocks], axis=1).view(np.complex128)
-        matrices = np.moveaxis(values.reshape(len(weight), *self.shape), 0, 1) * _scales(z)
-        return SpaceParts(matrices, self.node, self.missed)
+        weight, width = self.weight[lines], self.shape[-1]
+        found = np.empty((3, len(weight), self.values.shape[2]))
+        for k, values in enumerate(self.values):
+            for first in range(0, values.shape[1], TOGETHER):
+                some = np.s_[:, first : first + TOGETHER]
+                np.matmul(weight, values[some], out=found[k][some])
+        # real and imaginary parts beside each other
+        pairs = found.reshape(3, len(weight), -1, 2 * width**2)
+        pairs *= np.repeat(_scales(z).reshape(3, len(weight), 1, -1), 2, axis=3)
+        matrices = found.view(np.complex128).reshape(3, len(weight), *self.shape)
+        return SpaceParts(matrices, self.alike, self.node, self.missed)
 
 
 def _scales(z: Real) -> Real:

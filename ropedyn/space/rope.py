@@ -192,11 +192,17 @@ class SpaceRope:
         if own.drag.any():
             q += drag * own.drag[which][:, :, None]
         if own.initial.any():
-            initial = tension * own.initial[which]
-            SH = S @ initial
-            phi += SH
-            q -= initial.swapaxes(3, 4) @ SH
+            # a string, which gives by 1/T, has none
+            SH, HSH = own.with_initial
+            phi += tension / section * SH[which]
+            q -= tension**2 / section * HSH[which]
         return found
+
+    @computed
+    def with_initial(self) -> tuple[Matrices, Matrices]:
+        """Return S Gamma and Gamma^T S Gamma of the section's flexibility."""
+        SH = self.soft @ self.initial
+        return SH, self.initial.swapaxes(-1, -2) @ SH
 
     def nodes(self, which: Index, factors: Factors) -> Complex:
         """Return the stiffness of what stands at the nodes, shape (n, pieces + 1, width, width)."""

@@ -49,7 +49,8 @@ def coefficients(values: Any) -> Any:
     samples = values.shape[-4]
     if samples == 1:
         return values
-    found = np.einsum("kj,...jabc->...kabc", fitted(samples), values)
+    rows = np.ascontiguousarray(values).reshape(*values.shape[:-3], -1)
+    found = (fitted(samples) @ rows.view(np.float64)).view(rows.dtype).reshape(values.shape)
     parts = [found.real, found.imag] if np.iscomplexobj(found) else [found]
     for part, given in zip(parts, [values.real, values.imag]):
         part[np.abs(part) <= ROUNDED * np.abs(given).max(axis=-4, keepdims=True)] = 0.0

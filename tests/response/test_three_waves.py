@@ -63,6 +63,13 @@ def test_damped_laid_rope_responds_as_the_continuum(tension, damping, claim):
     accepted=BOUND,
 )
 def test_hanging_rope_responds_as_the_continuum(kl, tension, stiffness, claim):
+    """All are within 2e-15 but x at the driven place, of EA = T and 0.2 radians: 2.8e-13.
+
+    x(s) = N s/EA - kappa int_0^s z with N of x(L) = 0 is a difference of equal terms there: they
+    cancel of a string at rest, and 1800 times here (41 times one metre beside, 3 times at 75 m).
+    The error is 3 eps of either, as of all others; a condition that changes T, EA and inertia
+    as wholes changes both alike and sees none of it.
+    """
     scene = hanging(tension, stiffness)
     f = kl / 100.0 * tension**0.5 / (2 * np.pi)
     claim(max(errors(scene, f, ("z", 40.0), [("z", 75.0), ("x", 40.0)])))
