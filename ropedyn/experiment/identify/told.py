@@ -20,6 +20,7 @@ from .fit_peaks import Options
 from .known import METHODS, Known, Solved, intervals
 from .notes import notes_of
 
+EXACT = 1e-12  # Of a frequency: what is less is rounding, of made peaks, and no deviation.
 CAUSES = {"linear_density": "mass"}
 """Words of causes that are not the paths of the numbers."""
 
@@ -70,7 +71,7 @@ def by_least_squares(
         ends=(),
         fixity=(),
         assumed=assumed_of(how),
-        notes=(*notes_of(solution), *_outliers(solution, measured)),
+        notes=(*notes_of(solution), *_outliers(solution, measured, weight)),
         method="least squares",
         evaluations=int(solution.record["evaluations"][0]),
     )
@@ -85,13 +86,15 @@ def _probability(solution: Solution, square: float, peaks: int) -> float:
     return float(chdtrc(freedom, square)) if given and freedom > 0 else float("nan")
 
 
-def _outliers(solution: Solution, measured: Real) -> list[str]:
-    """Name peaks that are off what the others say."""
+def _outliers(solution: Solution, measured: Real, weight: Real) -> list[str]:
+    """Name peaks that are off what the others say by more than rounding."""
     record, given = solution.record, ~np.isnan(solution.task.noise[solution.rows])
     over = solution.nominal[:, None] if given[0] else np.ones((1, 1))
     residual, slope = record["residual"] / over, record["slope"] / over[:, :, None]
     if solution.side.any() or not np.isfinite(residual).all():
         return []
+    off = np.abs(record["residual"][:, : len(measured)] * weight)
+    residual[:, : len(measured)][off <= EXACT * measured] = 0.0
     found = outliers(residual, slope, given, peaks=len(measured))
     return [one.sentence(measured, solution.unknowns, solution.u[0]) for one in found]
 
