@@ -338,7 +338,7 @@ def test_a_universal_file_without_motion_is_named(tmp_path):
         rd.Record.read(tmp_path / "a.uff")
 
 
-@pytest.mark.parametrize("rate", ["0.0", "-0.0", "nan", "-64.0"])
+@pytest.mark.parametrize("rate", ["0.0", "-0.0", "nan", "-64.0", "1e-308"])
 def test_a_universal_file_of_no_rate_is_named(rate, tmp_path):
     pytest.importorskip("pyuff")
     time = np.arange(20) / 64

@@ -350,10 +350,12 @@ def _own_universal(
         if match is None:
             raise ValueError(found[0].fields["id3"])
         start, rate = float(match["start"]), float(match["rate"])
-        if not rate > 0:
+        rows = np.array([record.fields["data"] for record in found], dtype=np.float64)
+        with np.errstate(over="ignore"):
+            time = start + np.arange(rows.shape[1]) / rate if rate > 0 else np.full(1, np.inf)
+        if not np.isfinite(time).all():
             raise ValueError(match["rate"])
         points = [(m["name"], float(m["x"])) for m in own if m is not None]
-        rows = np.array([record.fields["data"] for record in found], dtype=np.float64)
     kinds = [m["what"] for m in own if m is not None]
     pushed = kinds[-1] == "force"
     order = uff.MOTION.get(found[0].fields["ordinate_spec_data_type"])
@@ -361,7 +363,7 @@ def _own_universal(
     if quantity is None or "force" in kinds[:-1] or (pushed and len(kinds) == 1):
         raise SceneError(changed)
     return RecordContent(
-        time=start + np.arange(rows.shape[1]) / rate,
+        time=time,
         value=rows[:-1] if pushed else rows,
         rate=rate,
         response=points[:-1] if pushed else points,
