@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
+from itertools import islice
+from queue import SimpleQueue
 from typing import Any
 
 import numpy as np
@@ -13,7 +15,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..base.array import Complex, Real
 from ..base.errors import SceneError, SolveError
-from ..base.threads import PATIENCE, Deferred
+from ..base.threads import Deferred
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT, MOST_STEPS
 from ..chain.port import Point, Ports, is_force, is_held, local, moving, ports
@@ -26,7 +28,7 @@ from .rounding import EPS, bound_of, bound_of_structures
 
 NODES = 40  # Of a band: pieces end below 0.76 of their resonance, the error falls by 2.9 with each.
 LANES = 16  # Frequencies that the sweep solves side by side.
-SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 17
+SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 16
 """Steps times frequencies of one call of the core: a look for Ctrl-C some times a second."""
 BOUND_SLICE = 1 << 18  # Pairs of loads times stations times frequencies, likewise.
 
@@ -181,18 +183,23 @@ def in_slices(
 def _shared(
     solve: Callable[[slice], Sequence[NDArray[Any]]], parts: Sequence[slice], workers: int
 ) -> list[Sequence[NDArray[Any]]]:
-    """Solve each part on one of several threads."""
+    """Solve each part on one of several threads, which have few before them."""
+    found: dict[int, Sequence[NDArray[Any]]] = {}
+    running: dict[Future[Sequence[NDArray[Any]]], int] = {}
+    done: SimpleQueue[Future[Sequence[NDArray[Any]]]] = SimpleQueue()
+    todo = enumerate(parts)
     with Deferred() as interrupt, ThreadPoolExecutor(workers) as executor:
         try:
-            left = set(each := [executor.submit(solve, part) for part in parts])
-            while left:
-                interrupt.let_in()
-                done, left = wait(left, PATIENCE, FIRST_EXCEPTION)
-                for future in done:
-                    future.result()
+            while len(found) < len(parts):
+                for k, part in islice(todo, 2 * workers - len(running)):
+                    future = executor.submit(solve, part)
+                    running[future] = k
+                    future.add_done_callback(done.put)
+                future = interrupt.get(done)
+                found[running.pop(future)] = future.result()
         finally:
             executor.shutdown(cancel_futures=True)
-    return [future.result() for future in each]
+    return [found[k] for k in range(len(parts))]
 
 
 def _hold(question: Question, value: NDArray[Any]) -> None:

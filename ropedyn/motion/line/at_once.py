@@ -29,7 +29,7 @@ def at_once(value: Complex, omega: float, slow: Complex) -> Expansion:
     """Return oscillators that do it, from values at omega LOOKS and at the least rate, slow."""
     h = _fitted(value)
     for slower in SLOWER:
-        still = h[..., 0] + h[..., 1:] @ (slower ** np.arange(1, ORDER + 1) * AT_REST)
+        still = h[..., 0] + (h[..., 1:] * slower ** np.arange(1, ORDER + 1) * AT_REST).sum(axis=-1)
         if (np.abs(still) <= LARGE * np.abs(slow)).all():
             break
     return _oscillators(h, omega, slower)
@@ -38,7 +38,9 @@ def at_once(value: Complex, omega: float, slow: Complex) -> Expansion:
 def _oscillators(h: Real, omega: float, slower: float) -> Expansion:
     """Return oscillators of rates from omega/slower on, from h_m/omega^m."""
     slow = omega / slower
-    ab = (h[..., 1:] * slower ** np.arange(1, ORDER + 1)) @ MATCHED.T
+    # row by row: a response has the same bits beside others
+    terms = h[..., 1:] * slower ** np.arange(1, ORDER + 1)
+    ab = (terms[..., None, :] * MATCHED).sum(axis=-1)
     b, a = (np.asarray(ab[..., k::2] * slow ** (k + 1), dtype=np.float64) for k in range(2))
     sigma = np.asarray(slow * PAIRS.mean(axis=1), dtype=np.float64)
     square = np.asarray(slow**2 * PAIRS.prod(axis=1), dtype=np.float64)
