@@ -77,7 +77,7 @@ MOVED = (*SQUARE, *ALONG, "hinge", "attached_row", "attached_value")
 
 def moved(array: Array, amount: float, random: np.random.Generator, square: bool = False) -> Array:
     """Return the numbers with relative errors."""
-    off = random.uniform(-1, 1, array.shape)
+    off = random.uniform(-1, 1, array.shape).astype(Number)
     if square:
         off = off + np.swapaxes(off, -1, -2)
     return np.asarray(array * (1 + Number(amount) * off))
@@ -362,7 +362,7 @@ def tip_rows(model: Compiled, structure: int, factor: Array, root: list[int]) ->
 
 def factors_of(scene: Scene, frequency: Real, decay: float) -> Array:
     """Return the factors on the parts of a model in wide numbers, (5, f)."""
-    omega = 2 * PI * frequency
+    omega = 2 * PI * np.asarray(frequency, dtype=Number)  # NumPy 1 keeps doubles beside a scalar
     if decay:
         omega = omega - 1j * Number(decay)
     return damping.factors(scene.dampings, omega).T
