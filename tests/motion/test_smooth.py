@@ -1,7 +1,8 @@
 """Motion under smooth laws, by collocation, against closed forms and explicit steps."""
 
+import itertools
 import math
-from itertools import pairwise
+import signal
 
 import numpy as np
 import pytest
@@ -138,6 +139,19 @@ def test_law_that_raises_is_named_and_what_was_before_stays():
     assert any("parts[0].law(t=0.03" in note for note in caught.value.__notes__)
 
 
+def test_ctrl_c_in_a_law_that_takes_arrays_ends_the_call():
+    asked = itertools.count()
+
+    def law(t, u, v):
+        if np.ndim(u) and next(asked) == 20:
+            signal.raise_signal(signal.SIGINT)
+        return -CUBIC * u**3
+
+    with pytest.raises(KeyboardInterrupt):
+        released(mass_on_a_string(rd.NodeForce(LENGTH / 2, law)), np.linspace(0.0, 0.5, 301))
+    assert next(asked) == 21
+
+
 # --- mean stretching ----------------------------------------------------------------------------
 
 AXIAL = 2e6
@@ -230,7 +244,7 @@ def explicit(model, laws, at, force, time, order):
 
     edges = np.unique([time[0], *(b for b in force.breaks if 0 < b < time[-1]), time[-1]])
     y, value = np.zeros(2 * n), np.zeros((2 * n, len(time)))
-    for begin, end in pairwise(edges):
+    for begin, end in itertools.pairwise(edges):
         inside = (time >= begin) & (time <= end)
         last = end - 1e-12 * (end - begin)  # a jump at the end belongs to what follows
         ask = np.unique(np.minimum(np.append(time[inside], end), last))

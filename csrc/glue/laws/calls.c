@@ -21,6 +21,15 @@ static bool fail(struct py_calls *calls, size_t law, double t, double u, double 
     return false;
 }
 
+/* drops what was raised; false of what ends everything, as Ctrl-C does, which stays */
+static bool forget(void)
+{
+    if (PyErr_Occurred() && !PyErr_ExceptionMatches(PyExc_Exception))
+        return false;
+    PyErr_Clear();
+    return true;
+}
+
 /* the number of an object, NAN of what is none; an exception of the law stays */
 static double number_of(PyObject *value)
 {
@@ -28,7 +37,7 @@ static double number_of(PyObject *value)
         return value == NULL ? NAN : PyFloat_AS_DOUBLE(value);
     const double number = PyBool_Check(value) ? NAN : PyFloat_AsDouble(value);
     if (PyErr_Occurred()) {
-        PyErr_Clear();
+        forget();
         return NAN;
     }
     return number;
@@ -86,7 +95,8 @@ bool py_say(void *context, size_t law, size_t count, const double *t, const doub
     if (calls->arrays != NULL && calls->arrays[law]) {
         if (say_all(calls, law, count, t, u, v, force))
             return true;
-        PyErr_Clear();
+        if (!forget())
+            return fail(calls, law, t[0], u[0], v[0]);
     }
     for (size_t i = 0; i < count; i++)
         if (!say_one(calls, law, t[i], u[i], v[i], force + i))
