@@ -18,13 +18,16 @@ import os
 import signal
 import sys
 import threading
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
 from contextlib import suppress
 from importlib import _bootstrap, import_module
 from queue import Empty, SimpleQueue
 from types import FrameType, TracebackType
-from typing import Any, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
-One = TypeVar("One")
+Key = TypeVar("Key")
+Got = TypeVar("Got")
 MOST = 100  # Imports one after another; more are those of a thread that waits for this one's.
 
 
@@ -52,10 +55,13 @@ os.register_at_fork(before=finish_imports)
 PATIENCE = 0.05  # What waits for threads looks for Ctrl-C so often [s].
 
 
-class Deferred:
-    """Keep Ctrl-C from its handler within a `with`, but where it is let in."""
+class Errands(Generic[Key, Got]):
+    """Calls that an executor makes; within a `with` Ctrl-C waits until one is waited for."""
 
-    def __init__(self) -> None:
+    def __init__(self, executor: Executor) -> None:
+        self.executor = executor
+        self._done: SimpleQueue[Future[Got]] = SimpleQueue()
+        self._key: dict[Future[Got], Key] = {}
         self._handler: Any = None
         self._came: tuple[int, FrameType | None] | None = None
 
@@ -74,22 +80,39 @@ class Deferred:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        for future in self._key:
+            future.cancel()
+        del self.executor  # nobody else's tells its threads that it goes, which takes locks
         if self._handler is not None:
             signal.signal(signal.SIGINT, self._handler)
-            self.let_in()
+            self._let_in()
+
+    def __len__(self) -> int:
+        return len(self._key)
+
+    def send(self, key: Key, call: Callable[..., Got], *given: Any) -> None:
+        """Have a call made; what refuses it at once, as a broken pool does, comes back as well."""
+        try:
+            future = self.executor.submit(call, *given)
+        except Exception as error:
+            future = Future()
+            future.set_exception(error)
+        self._key[future] = key
+        future.add_done_callback(self._done.put)
+
+    def receive(self) -> tuple[Key, Future[Got]]:
+        """Wait for one of those that were sent, and for Ctrl-C."""
+        while True:
+            self._let_in()
+            with suppress(Empty):
+                future = self._done.get(timeout=PATIENCE)
+                return self._key.pop(future), future
 
     def _note(self, number: int, frame: FrameType | None) -> None:
         self._came = number, frame
 
-    def let_in(self) -> None:
+    def _let_in(self) -> None:
         """Give the handler what has come, which may raise."""
         came, self._came = self._came, None
         if came is not None:
             self._handler(*came)
-
-    def get(self, done: SimpleQueue[One]) -> One:
-        """Wait for what threads put there, and for Ctrl-C."""
-        while True:
-            self.let_in()
-            with suppress(Empty):
-                return done.get(timeout=PATIENCE)

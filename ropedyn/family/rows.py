@@ -6,7 +6,6 @@ from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass
-from queue import SimpleQueue
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +15,7 @@ from ..base.answer import Answer, Cost
 from ..base.array import Index, Real
 from ..base.errors import RopedynError, SceneError, SolveError
 from ..base.progress import Progress, reporter
-from ..base.threads import Deferred
+from ..base.threads import Errands
 
 Array = np.ndarray[Any, Any]
 
@@ -116,29 +115,16 @@ class Shared:
             for chunk in chunks:
                 yield chunk, stage.solve(self.rows[chunk])
             return
-        with Deferred() as interrupt:
-            yield from self._shared(stage, chunks, threads, interrupt)
-
-    def _shared(
-        self, stage: Means, chunks: list[Index], threads: int, interrupt: Deferred
-    ) -> Generator[tuple[Index, Filled]]:
-        executor = self.executor or ThreadPoolExecutor(threads)
-        done: SimpleQueue[Future[Filled]] = SimpleQueue()
-        pending: dict[Future[Filled], Index] = {}
-        try:
-            for chunk in chunks:
-                future = _submitted(executor, stage.solve, self.rows[chunk])
-                pending[future] = chunk
-                future.add_done_callback(done.put)
-            while pending:
-                future = interrupt.get(done)
-                chunk = pending.pop(future)
-                yield chunk, self._received(future, len(chunk))
-        finally:
-            for future in pending:
-                future.cancel()
-            if executor is not self.executor:
-                executor.shutdown(wait=False, cancel_futures=True)
+        with Errands[Index, Filled](self.executor or ThreadPoolExecutor(threads)) as sent:
+            try:
+                for chunk in chunks:
+                    sent.send(chunk, stage.solve, self.rows[chunk])
+                while sent:
+                    chunk, future = sent.receive()
+                    yield chunk, self._received(future, len(chunk))
+            finally:
+                if sent.executor is not self.executor:
+                    sent.executor.shutdown(wait=False, cancel_futures=True)
 
     def _received(self, future: Future[Filled], sent: int) -> Filled:
         """Return a part; rows that another's executor lost have failed."""
@@ -151,13 +137,3 @@ class Shared:
         except (Exception, CancelledError) as error:
             why = "SolveError", f"the executor lost this row: {error!r}"
             return Filled(np.arange(0), (), dict.fromkeys(range(sent), why))
-
-
-def _submitted(executor: Executor, solve: Callable[[Any], Filled], rows: Array) -> Future[Filled]:
-    """Submit rows; what refuses them at once, as a broken pool does, is a future as well."""
-    try:
-        return executor.submit(solve, rows)
-    except Exception as error:
-        refused: Future[Filled] = Future()
-        refused.set_exception(error)
-        return refused

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from itertools import islice
-from queue import SimpleQueue
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..base.array import Complex, Real
 from ..base.errors import SceneError, SolveError
-from ..base.threads import Deferred
+from ..base.threads import Errands
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT, MOST_STEPS
 from ..chain.port import Point, Ports, is_force, is_held, local, moving, ports
@@ -185,20 +184,16 @@ def _shared(
 ) -> list[Sequence[NDArray[Any]]]:
     """Solve each part on one of several threads, which have few before them."""
     found: dict[int, Sequence[NDArray[Any]]] = {}
-    running: dict[Future[Sequence[NDArray[Any]]], int] = {}
-    done: SimpleQueue[Future[Sequence[NDArray[Any]]]] = SimpleQueue()
     todo = enumerate(parts)
-    with Deferred() as interrupt, ThreadPoolExecutor(workers) as executor:
+    with Errands[int, Sequence[NDArray[Any]]](ThreadPoolExecutor(workers)) as sent:
         try:
             while len(found) < len(parts):
-                for k, part in islice(todo, 2 * workers - len(running)):
-                    future = executor.submit(solve, part)
-                    running[future] = k
-                    future.add_done_callback(done.put)
-                future = interrupt.get(done)
-                found[running.pop(future)] = future.result()
+                for k, part in islice(todo, 2 * workers - len(sent)):
+                    sent.send(k, solve, part)
+                k, future = sent.receive()
+                found[k] = future.result()
         finally:
-            executor.shutdown(cancel_futures=True)
+            sent.executor.shutdown(cancel_futures=True)
     return [found[k] for k in range(len(parts))]
 
 

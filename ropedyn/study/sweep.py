@@ -8,7 +8,6 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
 import numpy as np
@@ -20,7 +19,7 @@ from ..base.atomic import write_bytes
 from ..base.computed import waited
 from ..base.progress import Progress, reporter
 from ..base.table import Table, numbers
-from ..base.threads import Deferred
+from ..base.threads import Errands
 from .archive import packed, unpacked
 from .outcome import Errand, Failure, Outcome, outcome_of
 
@@ -289,53 +288,24 @@ def _sent(
     function: Callable[[One], Any], scenes: Sequence[One], executor: Executor
 ) -> Generator[tuple[int, Outcome]]:
     """Yield numbers of scenes and their outcomes as they come back."""
-    with Deferred() as interrupt:
-        yield from _shared(function, scenes, executor, interrupt)
-
-
-def _shared(
-    function: Callable[[One], Any], scenes: Sequence[One], executor: Executor, interrupt: Deferred
-) -> Generator[tuple[int, Outcome]]:
-    done: SimpleQueue[Future[list[Outcome]]] = SimpleQueue()
-    pending: dict[Future[list[Outcome]], range] = {}
     todo = deque(_parts(range(len(scenes)), CHUNKS))
-    try:
-        while todo or pending:
+    with Errands[range, list[Outcome]](executor) as sent:
+        while todo or sent:
             while todo:
                 chunk = todo.popleft()
-                future = _submitted(executor, function, scenes[chunk.start : chunk.stop])
-                pending[future] = chunk
-                future.add_done_callback(done.put)
-            future = interrupt.get(done)
-            chunk = pending.pop(future)
+                sent.send(chunk, Errand(function, scenes[chunk.start : chunk.stop]))
+            chunk, future = sent.receive()
             outcomes = _received(future, len(chunk))
             yield from zip(chunk, outcomes)
             rest = chunk[len(outcomes) :]
             # what takes long is spread further; of what failed as a whole the culprit is looked for
             todo.extend(_parts(rest, 2 if outcomes else len(rest)))
-    finally:
-        for future in pending:
-            future.cancel()
 
 
 def _parts(whole: range, count: int) -> list[range]:
     """Cut a range into so many parts, of one number each where there are fewer."""
     size = max(1, -(-len(whole) // max(1, count)))
     return [whole[k : k + size] for k in range(0, len(whole), size)]
-
-
-def _submitted(
-    executor: Executor, function: Callable[[One], Any], scenes: Sequence[One]
-) -> Future[list[Outcome]]:
-    """Submit scenes; what refuses them at once, as a broken pool does, is a future as well."""
-    from concurrent.futures import Future
-
-    try:
-        return executor.submit(Errand(function, scenes))
-    except Exception as error:
-        refused: Future[list[Outcome]] = Future()
-        refused.set_exception(error)
-        return refused
 
 
 def _received(future: Future[list[Outcome]], sent: int) -> list[Outcome]:
