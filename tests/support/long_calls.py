@@ -18,7 +18,11 @@ import matplotlib.animation
 import matplotlib.pyplot  # noqa: F401
 import numpy as np
 import scipy.integrate
-import scipy.optimize  # noqa: F401
+import scipy.ndimage
+import scipy.optimize
+import scipy.signal
+import scipy.special
+import scipy.stats  # noqa: F401
 import xarray  # noqa: F401
 
 import ropedyn as rd
