@@ -1,5 +1,24 @@
-/* Parts of a piece at several lines side by side, doubled at once: included by what has included kernel.h
-   with numbers of RD_LANES lines. */
+/* Parts of a piece at several lines side by side, doubled at once: included by what defines NUM, numbers of
+   RD_LANES lines, as kernel.h says. */
+#define SIZE lanes
+#define EITHER lane_mask
+
+/* NAN where one is */
+RD_INLINE lanes larger_size(lanes a, lanes b)
+{
+    return l_select(l_above(a, b) | ~l_not_below(a, a), a, b);
+}
+RD_INLINE lanes lesser_size(lanes a, lanes b)
+{
+    return l_select(l_above(a, b), b, a);
+}
+RD_INLINE int any(lane_mask m)
+{
+    return l_any(m);
+}
+
+#include "space/kernel.h"
+
 static RD_CLONES void family_fill(const struct rd_space_run *run, const NUM *E, struct rates *rates,
                                   struct family *f)
 {

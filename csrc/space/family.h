@@ -5,8 +5,6 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 #define NUM lanes
-#define SIZE lanes
-#define EITHER lane_mask
 
 RD_INLINE lanes number(double a)
 {
@@ -40,19 +38,6 @@ RD_INLINE lanes sizes(lanes a)
 {
     return l_abs(a);
 }
-/* NAN where one is */
-RD_INLINE lanes larger_size(lanes a, lanes b)
-{
-    return l_select(l_above(a, b) | ~l_not_below(a, a), a, b);
-}
-RD_INLINE lanes lesser_size(lanes a, lanes b)
-{
-    return l_select(l_above(a, b), b, a);
-}
-RD_INLINE int any(lane_mask m)
-{
-    return l_any(m);
-}
 RD_INLINE int is_zero(lanes a)
 {
     return !l_any((lane_mask)a << 1);
@@ -71,8 +56,6 @@ RD_INLINE void exchange(lanes *a, lanes *b, lane_mask m)
     *a = l_select(m, *b, x);
     *b = l_select(m, x, *b);
 }
-
-#include "space/kernel.h"
 
 #include "space/doubling.h"
 

@@ -8,8 +8,6 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 #define NUM cv
-#define SIZE lanes
-#define EITHER lane_mask
 
 RD_INLINE cv number(double a)
 {
@@ -39,19 +37,6 @@ RD_INLINE lanes size(cv a)
 {
     return c_size(a);
 }
-/* NAN where one is */
-RD_INLINE lanes larger_size(lanes a, lanes b)
-{
-    return l_select(l_above(a, b) | ~l_not_below(a, a), a, b);
-}
-RD_INLINE lanes lesser_size(lanes a, lanes b)
-{
-    return l_select(l_above(a, b), b, a);
-}
-RD_INLINE int any(lane_mask m)
-{
-    return l_any(m);
-}
 RD_INLINE int is_zero(cv a)
 {
     return c_is_zero(a);
@@ -75,8 +60,6 @@ RD_INLINE void exchange(cv *a, cv *b, lane_mask m)
     *a = (cv){l_select(m, b->re, x.re), l_select(m, b->im, x.im)};
     *b = (cv){l_select(m, x.re, b->re), l_select(m, x.im, b->im)};
 }
-
-#include "space/kernel.h"
 
 #include "space/doubling.h"
 
