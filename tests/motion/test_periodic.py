@@ -88,6 +88,14 @@ def test_three_motions_between_folds_and_the_middle_one_is_unstable():
     assert up.value[0, -1] == pytest.approx(down.value[0, 0], rel=1e-4)
 
 
+def test_branches_that_fold_and_those_that_do_not_say_how_far_they_are():
+    told = []
+    options = {"drive": ("z", 0.5), "branches": True, "progress": told.append}
+    duffing().stepped_sine([12.0, 24.0], amplitude=FORCE, **options)
+    duffing().stepped_sine([14.0, 20.0], amplitude=FORCE, **options)
+    assert told == [1.0, 0.5, 1.0]  # the motion at 20 Hz is not reached from 14 Hz first
+
+
 def test_branches_are_kept_in_files_and_drawn(tmp_path):
     options = {"drive": ("z", 0.5), "amplitude": FORCE, "branches": True}
     branches = duffing().stepped_sine([12.0, 24.0], **options)

@@ -139,9 +139,12 @@ def solve_branches(asked: SteppedSine) -> Branches:
     harmonics = HARMONICS
     while True:
         balance = driven.balance(harmonics)
-        traces = [settled(driven, way) for way in traced(driven, balance)]
-        found = [way for way in traces if way is not None]
-        if len(found) == len(traces):
+        ways = traced(driven, balance)
+        found: list[list[SteadyState]] = []
+        while len(found) < len(ways) and (way := settled(driven, ways[len(found)])) is not None:
+            found.append(way)
+            asked.progress(len(found) / len(ways))
+        if len(found) == len(ways):
             return _answer(driven, found)
         harmonics *= 2
         if 2 * harmonics > MOST:
