@@ -151,10 +151,8 @@ def lazy(kind: type[Any], axes: dict[str, Any] | None = None, *, optional: bool 
     With `axes` it holds an array, as a field of an answer with this metadata does; if it is
     `optional` it is None where nothing is given.
     """
-    metadata, default = (
-        {"nested": kind} if axes is None else axes,
-        Lazy[Any](kind, optional=optional),
-    )
+    metadata = {"nested": kind} if axes is None else axes
+    default = Lazy[Any](kind, optional=optional)
     return field(default=default, repr=axes is not None, kw_only=True, metadata=metadata)
 
 

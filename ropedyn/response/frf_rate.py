@@ -69,13 +69,10 @@ class ComponentRates:
     @computed
     def _lost(self) -> Real:
         """How far inertia is off where equal elements all lose digits of 1 - (kl)^2, (f,)."""
-        chain, factor, first = (
-            self.fields.chain,
-            self.fields.question.factor,
-            self.fields.chain.first,
-        )
+        chain = self.fields.chain
+        first = chain.first.astype(np.intp)
         count = np.diff(first)
-        turn = radians(chain, first.astype(np.intp), factor).max(axis=1) / count[:, None]
+        turn = radians(chain, first, self.fields.question.factor).max(axis=1) / count[:, None]
         least = turn[count > 1].min(axis=0, initial=1.0)
         return np.asarray(SLIGHT / np.maximum(least**2, SLIGHT ** (1 / 3)))
 

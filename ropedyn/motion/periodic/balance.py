@@ -64,7 +64,8 @@ class HarmonicBalance:
 
     def real(self, q: Complex) -> Real:
         """Return the unknowns, (n,), of harmonics."""
-        return _flat(np.concatenate([q.real, q.imag[..., 1:]], axis=-1))
+        parts = np.concatenate([q.real, q.imag[..., 1:]], axis=-1)
+        return parts.reshape(*parts.shape[:-2], -1)
 
     def wider(self, x: Real, harmonics: int) -> Real:
         """Return the unknowns of a balance with more harmonics, the new ones 0."""
@@ -135,10 +136,6 @@ class HarmonicBalance:
         ahead = np.fft.rfft(slope, norm="forward")[..., : 2 * self.harmonics + 1]
         every = np.concatenate([ahead[..., :0:-1].conj(), ahead], axis=-1)
         return np.asarray(every[..., self.pairs])
-
-
-def _flat(unknowns: Real) -> Real:
-    return unknowns.reshape(*unknowns.shape[:-2], -1)
 
 
 def _on(H: Complex, push: Complex) -> Complex:

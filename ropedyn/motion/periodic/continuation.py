@@ -1,8 +1,8 @@
 """Branches of solutions of G(x, p) = 0, by pseudo-arclength.
 
 A step goes along the tangent, bent as it was on the step before, and returns to the curve in the
-plane across it. It is accepted while
-the tangent turns little: that alone tells whether a resonance was passed.
+plane across it. It is accepted while the tangent turns little: that alone tells whether a resonance
+was passed.
 """
 
 from __future__ import annotations
