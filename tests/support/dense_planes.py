@@ -28,11 +28,15 @@ def _edges_of(part):
 
 
 class Line:
-    """Elements of a rope, with their properties at its points of integration."""
+    """Elements of a rope, with their properties at its points of integration.
 
-    def __init__(self, scene):
+    They are as short as layers of bending in these planes: shorter ones would cost digits.
+    """
+
+    def __init__(self, scene, planes="zy"):
         rope = self.rope = scene.rope
         self.scene, self.bends = scene, rope.bending_stiffness is not None
+        self.planes = planes
         parts = scene.parts
         stand = [part.x for part in parts if hasattr(part, "x")]
         edges = [
@@ -57,8 +61,7 @@ class Line:
         """Stations, and between them places that lie closer where bending ends in a layer."""
         layer = self.rope.length / 8
         if self.bends:
-            B = self.rope.bending_stiffness
-            least = min(B if isinstance(B, tuple) else (B,))
+            least = min(of(self.rope.bending_stiffness, plane) for plane in self.planes)
             least *= min([1.0, *(min(p.bending) for p in self._changes())])
             layer = min(layer, 2 * math.sqrt(least / max(most, 1e-300)))
             if self.scene.torque:
@@ -129,13 +132,14 @@ def values(degree, length, at=None):
 
 def frequencies(scene, number):
     """The lowest frequencies [Hz] of a scene without sag, and what rounding leaves of each."""
-    line = Line(scene)
-    z, y = (_plane(line, plane) for plane in "zy")
     if not scene.torque:
-        found = [_solved(K, M, number) for K, M, _ in (z, y)]
+        apart = [_plane(Line(scene, plane), plane) for plane in "zy"]
+        found = [_solved(K, M, number) for K, M, _ in apart]
         frequency, error = np.concatenate(found, axis=1)
         order = np.argsort(frequency)[:number]
         return frequency[order], error[order]
+    line = Line(scene)
+    z, y = (_plane(line, plane) for plane in "zy")
     across = y[2].T @ _torque(line) @ z[2]
     K = np.block([[z[0], across.T], [across, y[0]]])
     return _solved(K, scipy.linalg.block_diag(z[1], y[1]), number)
