@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
-from support.orbits import compared
+from support.orbits import compared, multipliers, states_of
 
 import ropedyn as rd
-from ropedyn.motion.periodic.stability import FEWEST, _least
+from ropedyn.motion.periodic.stability import FEWEST, _least, growing
+from ropedyn.motion.periodic.state import settled
 
 # --- a mass on a string, and a spring that hardens -----------------------------------------------
 
@@ -119,6 +120,20 @@ def test_stability_is_that_of_the_monodromy(stops):
     assert [one[0] for one in orbits] == [one[1] for one in orbits]
     assert sum(one[1] > 0 for one in orbits) >= 2
     assert max(one[2] for one in orbits) < (1e-3 if stops else 1e-10)
+
+
+def test_disturbances_are_not_told_by_counts_that_agree():
+    # 9 and 18 harmonics both told three; a multiplier is 0.9914
+    stops = [rd.Stop(0.25, 9539.0, gap=1.4436e-3), rd.Stop(0.25, 9539.0, gap=2.11255e-3, side=-1)]
+    damping = rd.RayleighDamping(1.9376, 0.0)
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping, parts=stops)
+    driven, states = states_of(scene.compile(elements=4, element="rigid"), 0.40254)
+    near = min(states, key=lambda one: abs(one.frequency - 12.6356))
+    (state,) = settled(driven, [near])
+    _, multiplier = multipliers(driven, state)
+    assert np.sort(np.abs(np.abs(multiplier) - 1))[0] > 5e-3
+    told = growing(state.balance, state.place.x, state.place.p, 0)
+    assert told == (np.abs(multiplier) > 1).sum() == 2
 
 
 @pytest.mark.slow

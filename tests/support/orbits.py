@@ -51,15 +51,20 @@ def law_of(scene):
     return stopped if isinstance(scene.parts[0], rd.Stop) else hardening
 
 
-def random_states(rng, stops, tolerance=1e-6):
+def random_states(rng, stops):
     """Steady states of all branches of one random scene."""
     model = random_scene(rng, stops)
+    return states_of(model, float(10 ** rng.uniform(-0.5, 0.7)))
+
+
+def states_of(model, amplitude, tolerance=1e-6):
+    """Steady states of all branches of a string that is driven at its first node."""
     first = 15.8
     asked = SteppedSine.of(
         model,
         first * np.array([0.7, 1.1, 1.6]),
         drive=("z", float(model.x[1])),
-        amplitude=float(10 ** rng.uniform(-0.5, 0.7)),
+        amplitude=amplitude,
         response=None,
         quantity="receptance",
         tolerance=tolerance,

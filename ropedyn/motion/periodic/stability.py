@@ -7,7 +7,9 @@ A disturbance e^(s t) times a motion of the period goes on where
 D repeats itself along i omega, tends to 1 far to the right, and has the poles of H. So it has as
 many zeros with Re s > 0, 0 <= Im s < omega, as it winds about 0 on the way from s = 0 up to
 i omega, backwards, and as many more as the linear scene itself has motions that grow. D(conj s) =
-conj D(s): half the way is enough.
+conj D(s): half the way is enough. More harmonics multiply D by a number, which turns nothing, and
+move it besides by less than it is all the way, so that it winds as often with all of them (Rouche's
+theorem).
 """
 
 from __future__ import annotations
@@ -24,7 +26,8 @@ LOOKS = 17  # At first, beside those where H is known to change.
 ROUNDS = 40  # The way is halved so often at most.
 CLOSED = 0.05  # D is real at both ends, but for so much [rad]: there are enough harmonics.
 FINER = 2  # The slopes of forces are sampled so much closer than the forces.
-FEWEST = 8  # Harmonics at first: twice as many must tell the same.
+FEWEST = 8  # Harmonics at first.
+MOVED = 0.5  # Besides a multiple, twice as many move D by at most so much of it.
 BATCH = 1 << 19  # Numbers of matrices that are looked at together.
 
 
@@ -42,11 +45,13 @@ def growing(balance: HarmonicBalance, x: Real, omega: float, free: int) -> int |
     harmonics = _least(balance, felt.by_u, felt.by_v, omega)
     before = None
     while harmonics <= fine.samples // 4:
-        turns = _Strip(fine, stiff, drag, omega, harmonics).turns()
-        told = round(turns) if abs(turns - round(turns)) <= CLOSED / np.pi else None
-        if told is not None and told == before:
-            return free - told
-        harmonics, before = 2 * harmonics, told
+        strip = _Strip(fine, stiff, drag, omega, harmonics)
+        way, D = strip.followed()
+        turns = float(np.angle(D[1:] / D[:-1]).sum() / np.pi)
+        closes = abs(turns - round(turns)) <= CLOSED / np.pi
+        if closes and before is not None and strip.moved(before, way) <= MOVED:
+            return free - round(turns)
+        harmonics, before = 2 * harmonics, strip
     return None
 
 
@@ -71,8 +76,8 @@ class _Strip:
         self.stiff = stiff[..., pairs].transpose(2, 0, 1, 3)
         self.drag = drag[..., pairs].transpose(2, 0, 1, 3) if drag.any() else None
 
-    def turns(self) -> float:
-        """Return how often D winds about 0 from -i omega/2 to i omega/2."""
+    def followed(self) -> tuple[Real, Complex]:
+        """Return a way along which D turns little from one place to the next, and D/|D| there."""
         way = self._looks()
         D = self._signs(way)
         for _ in range(ROUNDS):
@@ -88,7 +93,15 @@ class _Strip:
             middle = (way[at] + way[at + 1]) / 2
             way = np.insert(way, at + 1, middle)
             D = np.insert(D, at + 1, self._signs(middle))
-        return float(np.angle(D[1:] / D[:-1]).sum() / np.pi)
+        return way, D
+
+    def moved(self, coarse: _Strip, way: Real) -> float:
+        """Return how far a multiple of that with fewer harmonics is from D, at most, over D."""
+        here, there = (one._each(way) for one in (self, coarse))
+        size = there[1] - here[1]
+        with np.errstate(over="ignore"):
+            share = there[0] / here[0] * np.exp(size - np.median(size))
+        return float(np.abs(1 - share).max())
 
     def _looks(self) -> Real:
         """Return where D is looked at first: also where H changes, folded into the strip."""
@@ -100,13 +113,17 @@ class _Strip:
         return looks[np.append(True, np.diff(looks) > 1e-12 * half)]
 
     def _signs(self, nu: Real) -> Complex:
-        """Return D/|D| at s = i nu."""
+        return self._each(nu)[0]
+
+    def _each(self, nu: Real) -> tuple[Complex, Real]:
+        """Return D/|D| and ln |D| at s = i nu."""
         m, n = self.balance.points, len(self.k)
         most = max(1, BATCH // (m * n) ** 2)
-        parts = [self._sign(nu[a : a + most]) for a in range(0, len(nu), most)]
-        return np.concatenate(parts)
+        parts = [self._some(nu[a : a + most]) for a in range(0, len(nu), most)]
+        sign, size = (np.concatenate(one) for one in zip(*parts))
+        return sign, size
 
-    def _sign(self, nu: Real) -> Complex:
+    def _some(self, nu: Real) -> tuple[Complex, Real]:
         m, n = self.balance.points, len(self.k)
         H = self.balance.transfer.at(nu[:, None] + self.k * self.omega)[..., :m, :-1]
         felt = self.stiff[None]
@@ -116,5 +133,5 @@ class _Strip:
         # (nu, k, i, p) (nu, k, p, j l)
         moved: Complex = (H @ felt.reshape(*felt.shape[:3], m * n)).reshape(len(nu), n * m, m, n)
         moved = moved.transpose(0, 1, 3, 2).reshape(len(nu), n * m, n * m)
-        sign = np.linalg.slogdet(np.eye(n * m) - moved)[0]
-        return np.where(sign == 0, 1.0, sign)
+        sign, size = np.linalg.slogdet(np.eye(n * m) - moved)
+        return np.where(sign == 0, 1.0, sign), size
