@@ -151,7 +151,7 @@ def _solved(K, M, number):
     found = scipy.linalg.eigh(K, M, eigvals_only=True, subset_by_index=(0, most))
     largest = scipy.linalg.eigh(K, M, eigvals_only=True, subset_by_index=(len(K) - 1,) * 2)[0]
     frequency = np.sqrt(np.maximum(found, 0.0)) / (2 * math.pi)
-    rounding = 50 * np.finfo(float).eps * largest
+    rounding = 10 * len(K) * np.finfo(float).eps * largest
     return frequency, np.sqrt(np.maximum(found, 0.0) + rounding) / (2 * math.pi) - frequency
 
 
