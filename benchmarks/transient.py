@@ -1,9 +1,10 @@
-"""Motion of a rope over two seconds under a sine: both methods beside SciPy and two programs.
+"""Motion of a rope over two seconds under a sine: both methods beside SciPy and three programs.
 
 python benchmarks/transient.py
 
-exudyn and openseespy are timed where they are installed. All solve the same equations, those of
-64 rigid elements, and are compared with their exact solution.
+exudyn, openseespy and ross-rotordynamics (with plotly < 6) are timed where they are installed. All
+are compared with the exact solution of 64 rigid elements, whose equations SciPy and exudyn solve
+too; OpenSees and ROSS have beam elements of their own.
 """
 
 # isort: off
@@ -14,6 +15,7 @@ import datetime
 import importlib.metadata
 import importlib.util
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -243,6 +245,36 @@ def opensees() -> np.ndarray:
     return u
 
 
+def ross() -> np.ndarray:
+    """A rotor at rest of as many beams under tension, by the integration it takes by default."""
+    import ross as rotors
+
+    rope = MODEL.scene.rope
+    wide = 4 * float(np.sqrt(rope.rotary_inertia / rope.linear_density))
+    area, second = np.pi * wide**2 / 4, np.pi * wide**4 / 64
+    stuff = rotors.Material(
+        "rope",
+        rho=rope.linear_density / area,
+        E=rope.bending_stiffness / second,
+        Poisson=0.3,
+    )
+    each: dict[str, Any] = {"L": rope.length / ELEMENTS, "idl": 0.0, "material": stuff}
+    taut = {"axial_force": scene.TENSION, "alpha": 0.0, "beta": scene.GAMMA, "odl": wide}
+    beam = partial(rotors.ShaftElement, **each, **taut, shear_effects=False, gyroscopic=False)
+    # its bearings hold no angle: a thick beam between two of them clamps
+    clamp = partial(rotors.ShaftElement, **each, odl=10 * wide)
+    shaft = [clamp(), *(beam() for _ in range(ELEMENTS)), clamp()]
+    held = [
+        rotors.BearingElement(n=n, kxx=1e12, kyy=1e12, cxx=0.0, cyy=0.0)
+        for n in (0, 1, ELEMENTS + 1, ELEMENTS + 2)
+    ]
+    rotor = rotors.Rotor(shaft, bearing_elements=held)
+    at = rotor.number_dof * (AT + 1)
+    force = np.zeros((len(TIME), rotor.ndof))
+    force[:, at] = FORCE
+    return np.asarray(rotor.run_time_response(0.0, force, TIME).yout)[:, at]
+
+
 def calls() -> dict[str, Callable[[], np.ndarray]]:
     own = {
         "ropedyn, modal, Sine": modal,
@@ -252,7 +284,11 @@ def calls() -> dict[str, Callable[[], np.ndarray]]:
         "scipy.signal.lsim": scipy_lsim,
         "scipy.integrate.solve_ivp, DOP853": scipy_solve_ivp,
     }
-    peers = {"exudyn": ("exudyn", exudyn), "openseespy": ("OpenSees", opensees)}
+    peers = {
+        "exudyn": ("exudyn", exudyn),
+        "openseespy": ("OpenSees", opensees),
+        "ross": ("ROSS", ross),
+    }
     return own | {
         name: call for module, (name, call) in peers.items() if importlib.util.find_spec(module)
     }
@@ -286,7 +322,7 @@ def main() -> None:
 
 def versions() -> str:
     """Say what is compared."""
-    names = ("scipy", "exudyn", "openseespy")
+    names = ("scipy", "exudyn", "openseespy", "ross-rotordynamics")
     told = []
     for name in names:
         try:
@@ -296,7 +332,7 @@ def versions() -> str:
     return ", ".join(told)
 
 
-PEERS = ("scipy.signal.lsim", "scipy.integrate.solve_ivp, DOP853", "exudyn", "OpenSees")
+PEERS = ("scipy.signal.lsim", "scipy.integrate.solve_ivp, DOP853", "exudyn", "OpenSees", "ROSS")
 
 if __name__ == "__main__":
     main()
