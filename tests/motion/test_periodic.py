@@ -119,7 +119,8 @@ def test_stability_is_that_of_the_monodromy(stops):
     orbits = compared(31, stops, 6, 3)
     assert [one[0] for one in orbits] == [one[1] for one in orbits]
     assert sum(one[1] > 0 for one in orbits) >= 2
-    assert max(one[2] for one in orbits) < (1e-3 if stops else 1e-10)
+    # asked to 1e-6: 100 orbits are open by 8e-9 at most, between stops by 3e-3
+    assert max(one[2] for one in orbits) < (1e-3 if stops else 1e-8)
 
 
 def test_disturbances_are_not_told_by_counts_that_agree():

@@ -191,8 +191,7 @@ def _trace(driven: Driven, balance: HarmonicBalance, f: Real, heading: int) -> l
         for piece in filter(None, pieces(branch)):
             for at in _passed(omega, piece):
                 inside = branch.between(*piece, at)
-                if inside is not None:
-                    states.append(SteadyState(balance, Place(inside, at, inside, 0.0)))
+                states.append(SteadyState(balance, Place(inside, at, inside, 0.0)))
             end = piece[1]
             if not omega[0] <= end.p <= omega[-1]:
                 return states

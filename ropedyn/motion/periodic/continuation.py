@@ -22,7 +22,7 @@ LONGEST, SHORTEST = 1.0, 1e-9  # Steps, in parts of the motion and of the scale 
 ASTRAY, FAR = 0.5, 0.25  # A step returns to the curve from this part of its length, and at most.
 NEWTON = 10  # Steps of Newton's method at most.
 ENOUGH = 1e-7  # Its last one, relative: what it leaves is about the square of that.
-ROUGHLY = 3e-3  # Its last one of what is only on the way, over the length of the step.
+ROUGHLY = 1e-2  # Its last one of what is only on the way, over the length of the step.
 PLENTY = 3  # A step that takes more is not followed by a longer one.
 
 Linearise = Callable[[Real, Any], tuple[Real, Real, Real]]
@@ -121,8 +121,8 @@ class Branch:
                 break
         return x, is_found
 
-    def between(self, before: Place, after: Place, p: float) -> Real | None:
-        """Return the solution at p between two places, by Hermite's cubic and Newton."""
+    def between(self, before: Place, after: Place, p: float) -> Real:
+        """Return about the solution at p between two places, by Hermite's cubic."""
         d = after.p - before.p
         s = (p - before.p) / d if d else 0.0
         slopes = [place.along * (d / place.up) if place.up else 0.0 for place in (before, after)]
@@ -130,7 +130,7 @@ class Branch:
         guess = guess + s * (1 - s) ** 2 * slopes[0] - s**2 * (1 - s) * slopes[1]
         if not np.linalg.norm(guess - before.x) <= 2 * np.linalg.norm(after.x - before.x):
             guess = before.x + s * (after.x - before.x)
-        return self.settle(guess, p)
+        return np.asarray(guess)
 
     def fold(self, before: Place, after: Place, *, enough: float = ENOUGH) -> Place | None:
         """Return where p turns between two places, None where steps do not lead there."""

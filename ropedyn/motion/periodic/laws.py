@@ -103,7 +103,8 @@ def _stop(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:
     k, gap, side = one.law.value
     step = time[..., 1:2] - time[..., :1]
     # where v passes 0 it is the acceleration that moves
-    turns = np.abs(np.diff(v, prepend=v[..., -1:])).max(axis=-1, keepdims=True) / 4
+    last = np.abs(v[..., 0] - v[..., -1])
+    turns = np.maximum(np.abs(v[..., 1:] - v[..., :-1]).max(axis=-1), last)[..., None] / 4
     passing = np.maximum(np.hypot(v, turns), TINY)
     a, w = side * u - gap, np.maximum(passing * (step / 2), TINY)
     share = np.minimum(np.maximum((a + w) / (2 * w), 0.0), 1.0)

@@ -56,6 +56,10 @@ def settled(driven: Driven, states: list[SteadyState]) -> list[SteadyState] | No
     States have as many harmonics at first.
     """
     tolerance, balance = driven.asked.tolerance or TOLERANCE, states[0].balance
+    exact = _exact(by_frequency(driven, balance), states, [one.place for one in states])
+    if exact is None:
+        return None
+    states = [one._replace(place=place) for one, place in zip(states, exact)]
     force = _forces(states)
     unmoved = np.zeros(balance.points, dtype=np.complex128)
     found = [
@@ -86,16 +90,10 @@ def _finer(
 ) -> list[SteadyState] | None:
     """Return states with more harmonics, None where they lead to another motion."""
     narrow, branch = states[0].balance, by_frequency(driven, balance)
-    places = [one.place._replace(x=narrow.wider(one.place.x, balance.harmonics)) for one in states]
-    asked = [k for k, one in enumerate(states) if one.kind == "asked"]
-    most = max(1, BATCH // len(places[0].x) ** 2)
-    for these in (asked[k : k + most] for k in range(0, len(asked), most)):
-        each = [places[k] for k in these]
-        x, is_found = branch.settled(np.array([one.x for one in each]), _rates(each))
-        if not is_found.all():
-            return None
-        for k, one in zip(these, x):
-            places[k] = places[k]._replace(x=one)
+    near = [one.place._replace(x=narrow.wider(one.place.x, balance.harmonics)) for one in states]
+    places = _exact(branch, states, near)
+    if places is None:
+        return None
     for k, one in enumerate(states):
         if one.kind != "asked":
             # across the branch: its place may move along it
@@ -113,6 +111,21 @@ def _finer(
         moved = abs(one.place.p - before.place.p) / (2 * np.pi)
         found.append(one._replace(push=push, change=push - before.push, moved=moved))
     return found
+
+
+def _exact(branch: Branch, states: list[SteadyState], near: list[Place]) -> list[Place] | None:
+    """Return places, exact at frequencies that are asked; None where one of these is not found."""
+    places = near.copy()
+    asked = [k for k, one in enumerate(states) if one.kind == "asked"]
+    most = max(1, BATCH // len(near[0].x) ** 2)
+    for these in (asked[k : k + most] for k in range(0, len(asked), most)):
+        each = [near[k] for k in these]
+        x, is_found = branch.settled(np.array([one.x for one in each]), _rates(each))
+        if not is_found.all():
+            return None
+        for k, one in zip(these, x):
+            places[k] = near[k]._replace(x=one)
+    return places
 
 
 def _rates(places: list[Place]) -> Real:

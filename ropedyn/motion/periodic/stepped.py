@@ -167,7 +167,7 @@ def at_rest(driven: Driven, balance: HarmonicBalance, frequency: float) -> Real:
         before = branch.place
         after = branch.advance()
         if after.p >= 1:
-            found = branch.between(before, after, 1.0)
+            found = branch.settle(branch.between(before, after, 1.0), 1.0)
             if found is not None:
                 return found
     raise _lost(frequency)

@@ -115,9 +115,9 @@ class PanelledTransfer:
     def _basis(self, omega: Real) -> tuple[Index, Real, Real]:
         """Return panels, Chebyshev's polynomials there, (f, terms), and their argument's slope."""
         self.cover(float(omega.max(initial=0.0)))
-        panel = (self.edge.searchsorted(omega, side="right") - 1).clip(0, len(self.series) - 1)
+        panel = np.minimum(self.edge.searchsorted(omega, side="right"), len(self.series)) - 1
         low, stretch = self.edge[panel], 2 / (self.edge[panel + 1] - self.edge[panel])
-        angle = np.arccos(np.clip((omega - low) * stretch - 1, -1.0, 1.0))
+        angle = np.arccos(np.minimum(np.maximum((omega - low) * stretch - 1, -1.0), 1.0))
         return panel, np.cos(np.multiply.outer(angle, np.arange(TERMS))), stretch
 
 
