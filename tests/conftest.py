@@ -1,9 +1,15 @@
 """Helpers of the tests: reference numbers and matrices for reading."""
 
+# isort: off
+import os
+
+# a worker has one core: more threads of BLAS would wait for each other's (read when it is loaded)
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# isort: on
+
 import gc
 import json
 import math
-import os
 import sys
 from pathlib import Path
 
