@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
-from support.orbits import compared, multipliers, states_of
+from support.orbits import compared, multipliers, random_scene, states_of
 
 import ropedyn as rd
 from ropedyn.motion.periodic.stability import FEWEST, _least, growing
@@ -148,6 +148,15 @@ def test_stability_of_200_orbits_is_that_of_the_monodromy(claim):
     orbits = compared(1901, False, 100, 30) + compared(1902, True, 100, 30)
     assert sum(one[1] > 0 for one in orbits) >= 50
     claim(np.mean([one[0] != one[1] for one in orbits]))
+
+
+def test_a_branch_of_sharp_turns_is_followed():
+    # steps that return to it three times as roughly lose it at 33.7 Hz
+    rng = np.random.default_rng((77, 1))
+    model, amplitude = random_scene(rng, stops=True), float(10 ** rng.uniform(-0.5, 0.7))
+    lines = 15.8 * np.sort(rng.uniform(0.5, 2.0, 12))
+    swept = model.stepped_sine(lines, drive=("z", float(model.x[1])), amplitude=amplitude)
+    assert (swept.rounding_error < 1e-5).all()
 
 
 # --- scenes that steps over time do not take -----------------------------------------------------

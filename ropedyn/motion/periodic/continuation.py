@@ -22,7 +22,7 @@ LONGEST, SHORTEST = 1.0, 1e-9  # Steps, in parts of the motion and of the scale 
 ASTRAY, FAR = 0.5, 0.25  # A step returns to the curve from this part of its length, and at most.
 NEWTON = 10  # Steps of Newton's method at most.
 ENOUGH = 1e-7  # Its last one, relative: what it leaves is about the square of that.
-ROUGHLY = 1e-2  # Its last one of what is only on the way, over the length of the step.
+ROUGHLY = 3e-3  # Its last one of what is only on the way, over the length of the step.
 PLENTY = 3  # A step that takes more is not followed by a longer one.
 
 Linearise = Callable[[Real, Any], tuple[Real, Real, Real]]
