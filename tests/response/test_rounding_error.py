@@ -35,12 +35,23 @@ def answer(line, solver):
     return frf.value[0, 0], frf.rounding_error[0, 0]
 
 
+def is_rounding(exact, omega, drive, response):
+    """Whether the reference is rounding, of 0 or of what is singular, that more digits change."""
+    (h,) = exact.receptance(omega, drive, [response])
+    with mpmath.workdps(DIGITS + 20):
+        (finer,) = exact.receptance(omega, drive, [response])
+    return abs(h - finer) > 1e-9 * abs(finer)
+
+
 def has_no_answer(exact, line):
     """Whether motion of the driven node changes by all its digits with the model's numbers."""
     omega, node = omega_of(line.frequency), line.drive[1]
     for c in exact.coordinates:
+        place = c, node
         try:
-            if condition(exact, omega, (c, node), (c, node)) > RESONANT:
+            if is_rounding(exact, omega, place, place):
+                return True
+            if condition(exact, omega, place, place) > RESONANT:
                 return True
         except ZeroDivisionError:
             return True
@@ -62,7 +73,10 @@ def error_and_estimate(seed, solver="sweep"):
         h = response(exact, line.frequency, line.drive, line.response)
         if value == 0:
             # 0, or less than there are numbers
-            return (0.0 if abs(h) < np.finfo(float).tiny else np.inf), estimate
+            omega = omega_of(line.frequency)
+            is_zero = abs(h) < np.finfo(float).tiny
+            is_zero = is_zero or is_rounding(exact, omega, line.drive, line.response)
+            return (0.0 if is_zero else np.inf), estimate
         return float(abs(h / mpmath.mpmathify(complex(value)) - 1)), estimate
 
 
