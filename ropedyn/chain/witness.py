@@ -174,7 +174,8 @@ def respond(
     parts = []
     for k in range(0, count, step):
         own = order[k : k + step]
-        parts.append(_elimination(chain, factor[:, own], z[:, own], loads, asked).fields(asked))
+        with np.errstate(all="ignore"):  # what is singular has no numbers
+            parts.append(_elimination(chain, factor[:, own], z[:, own], loads, asked).fields(asked))
     back = np.argsort(order, kind="stable")
     joined = [np.concatenate([getattr(p, n) for p in parts])[back] for n in ("u", "left", "right")]
     return NodeFields(asked, *joined)

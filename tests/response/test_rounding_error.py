@@ -155,6 +155,7 @@ def test_rounding_error_of_very_many_lines_is_no_useless_bound(many, claim):
         pytest.param(486, id="singular at rest", marks=pytest.mark.slow),
         pytest.param(701, id="faded behind heavy masses", marks=pytest.mark.slow),
         pytest.param(5497, id="faded along equal elements"),
+        pytest.param(4693, id="free to turn at rest"),
     ],
 )
 @pytest.mark.parametrize("solver", SOLVERS)
