@@ -13,12 +13,12 @@ FEW = 64  # Lines that are as soon solved one by one.
 REACH = 16.0  # Between the highest and the lowest that are crossed by the same parts.
 
 
-def bands(frequency: Real) -> Iterator[Index]:
-    """Yield lines by increasing frequency, no less than a share of their highest, or few more."""
+def bands(frequency: Real, *, few: int = FEW) -> Iterator[Index]:
+    """Yield lines by increasing frequency, no less than a share of their highest but for a few."""
     left = np.argsort(frequency, kind="stable")
     while len(left):
         below = int((frequency[left] < frequency[left[-1]] / REACH).sum())
-        begin = below if below >= FEW else 0
+        begin = below if below >= few else 0
         yield left[begin:]
         left = left[:begin]
 

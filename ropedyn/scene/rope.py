@@ -95,7 +95,8 @@ class Rope(Description):
     natural : {"axis", "straight"}, optional
         What a rope on an axis is when nothing loads it: as its axis, like a spring, or straight, so
         that it is bent by the moment B times the curvature, which counts across its plane. Left
-        out: straight on a catenary, else as its axis. None of a straight rope.
+        out: straight on a catenary without loads and of one bending stiffness, else as its axis.
+        None of a straight rope.
     principal_angle : float or pair of sequences, optional
         By which the principal axes of a pair of `bending_stiffness` are turned about x from z
         towards -y [rad], everywhere, or at places s [m], linear between them: a twisted strip.
@@ -332,8 +333,9 @@ class Rope(Description):
 
 def _natural(rope: Rope, axis: Axis) -> str:
     """Return what a rope on an axis is if nothing is said."""
-    bends = rope.bending_stiffness is not None
-    return "straight" if bends and isinstance(axis.pieces[0], CatenaryPiece) else "axis"
+    alike = len({piece[1:] for piece in axis.pieces}) == 1
+    hangs = alike and isinstance(axis.pieces[0], CatenaryPiece)
+    return "straight" if hangs and isinstance(rope.bending_stiffness, float) else "axis"
 
 
 def _agree_on(rope: Rope, axis: Axis) -> None:

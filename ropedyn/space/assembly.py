@@ -46,8 +46,8 @@ class Assembly:
     node : ndarray of int, shape (pieces + 1,)
         Where the nodes of the rope are.
     z : ndarray, shape (n, width)
-    missed : ndarray, shape (3, parts)
-        What D, G and Q may be off beside rounding, of their largest entries.
+    known : ndarray, shape (3, n, parts)
+        The least numbers whose roundings D, G and Q may be off by.
     doubt : ndarray, shape (n, parts + 1)
         What rounding may have done to N, where wires are carried.
     feet : tuple of Foot
@@ -64,7 +64,7 @@ class Assembly:
     absent: Flags
     node: Index
     z: Real
-    missed: Real
+    known: Real
     doubt: Real
     feet: tuple[Foot, ...] = ()
     closed: bool = False
@@ -89,8 +89,8 @@ class Assembly:
         """The largest entries of D, G, Q and N of each part, with all they are off in roundings."""
         rounding = ROUNDINGS * np.finfo(float).eps
         D, G, Q, N = (np.abs(one).max((2, 3)) for one in (self.D, self.G, self.Q, self.N))
-        off = 1 + self.missed / rounding
-        return D * off[0], G * off[1], Q * off[2], N + self.doubt / rounding
+        D, G, Q = np.maximum((D, G, Q), self.known)
+        return D, G, Q, N + self.doubt / rounding
 
     def shown(self, equal: int) -> Index:
         """Return the nodes at the ends of so many equal parts of each piece."""
@@ -157,14 +157,14 @@ class SpaceParts(NamedTuple):
     matrices: Complex  # (3, n, distinct, width, width) D, G and Q
     alike: Index  # (distinct,) how many of each lie one after another
     node: Index  # (pieces + 1,) where pieces begin among all
-    missed: Real  # (3, distinct) what they may be off beside rounding, of the largest entries
+    known: Real  # (3, n or 1, distinct) the least numbers whose roundings they are off by
 
     @property
     def every(self) -> tuple[Complex, Real]:
-        """D, G and Q of all, and what they may be off."""
+        """D, G and Q of all, and the least numbers whose roundings they are off by."""
         if (self.alike == 1).all():
-            return self.matrices, self.missed
-        return self.matrices.repeat(self.alike, axis=2), self.missed.repeat(self.alike, axis=1)
+            return self.matrices, self.known
+        return self.matrices.repeat(self.alike, axis=2), self.known.repeat(self.alike, axis=2)
 
 
 def parts_at(
@@ -190,7 +190,7 @@ def parts_at(
         last = first + len(own)
         matrices[:, :, first:last] = np.moveaxis(_spread(triple, len(own)), 2, 0)
         first = last
-    return SpaceParts(matrices, np.concatenate(alike), node, np.zeros((3, last)))
+    return SpaceParts(matrices, np.concatenate(alike), node, np.zeros((3, 1, last)))
 
 
 def assemble(
@@ -201,7 +201,7 @@ def assemble(
     which : (n,) or (1,) where it is the same at all n lines.
     """
     parts = parts or parts_at(rope, which, factors, z)
-    (D, G, Q), missed = parts.every
+    (D, G, Q), known = parts.every
     node = parts.node
     width, blocks = z.shape[1], rope.blocks
     for p in rope.kinks:
@@ -222,7 +222,7 @@ def assemble(
     absent = np.broadcast_to(blocks.absent[which], z.shape)
     held = np.tile(absent[:, None], (1, node[-1] + 1, 1))
     held[:, node] |= blocks.held[which]
-    return Assembly(D, G, Q, N, held, absent, node, z, missed, doubt, feet, rope.closed)
+    return Assembly(D, G, Q, N, held, absent, node, z, known, doubt, feet, rope.closed)
 
 
 class Foot(NamedTuple):

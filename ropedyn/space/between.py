@@ -10,7 +10,7 @@ import numpy as np
 from ..base.array import Index, Real
 from ..base.chebyshev import fitted
 from ..response.bands import between
-from .assembly import SpaceParts, parts_at
+from .assembly import ROUNDINGS, SpaceParts, parts_at
 from .rope import Factors, SpaceRope
 
 NODES = 40  # Of a band. Parts end below their resonances; of strings, the nearest, 32 left 1e-14.
@@ -29,6 +29,7 @@ class Between(NamedTuple):
     alike: Index
     node: Index
     missed: Real  # (3, parts) shares of the largest entries
+    most: Real  # (3, 1, parts, width, width) of entries at all nodes, not scaled
 
     @classmethod
     def of(
@@ -45,7 +46,8 @@ class Between(NamedTuple):
         size = np.abs(values * _scales(z[-1:])).max(axis=(1, 3, 4))
         missed = np.abs(last).max(axis=(0, 3, 4)) / np.where(size > 0, size, 1.0)
         flat = values.reshape(3, NODES, -1).view(np.float64)
-        return cls(weight, flat, values.shape[2:], parts.alike, parts.node, missed)
+        most = np.abs(values).max(axis=1, keepdims=True)
+        return cls(weight, flat, values.shape[2:], parts.alike, parts.node, missed, most)
 
     def at(self, lines: slice, z: Real) -> SpaceParts:
         """Return the parts at some lines."""
@@ -59,7 +61,10 @@ class Between(NamedTuple):
         pairs = found.reshape(3, len(weight), -1, 2 * width**2)
         pairs *= np.repeat(_scales(z).reshape(3, len(weight), 1, -1), 2, axis=3)
         matrices = found.view(np.complex128).reshape(3, len(weight), *self.shape)
-        return SpaceParts(matrices, self.alike, self.node, self.missed)
+        # what is small at a line has the roundings of what is large at others
+        size = (self.most * _scales(z)).max(axis=(3, 4))
+        known = size * (1 + self.missed[:, None] / (ROUNDINGS * np.finfo(float).eps))
+        return SpaceParts(matrices, self.alike, self.node, known)
 
 
 def _scales(z: Real) -> Real:

@@ -15,7 +15,7 @@ from ..base.answer import Frozen
 from ..base.array import Real
 from ..base.computed import waited
 from ..base.drawing import draw
-from ..base.errors import SceneError
+from ..base.errors import SceneError, SolveError
 from ..base.progress import Progress
 from ..chain.port import Point
 from ..eigen.animation import VIEWS
@@ -43,6 +43,7 @@ ELSEWHERE = (
     *("triples", "node_terms", "chain", "mesh_order"),
 )
 """What a model of a straight rope has that this one does not carry."""
+HIGHEST = 1e150  # Its square is a number [Hz].
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -268,6 +269,8 @@ class SpaceModel(Frozen):
             If the limit is not a number.
         SceneError
             If it is not positive.
+        SolveError
+            If it is too high for waves to be counted.
 
         Examples
         --------
@@ -279,6 +282,8 @@ class SpaceModel(Frozen):
         7
         """
         limit = check.number(below, "below", "Hz", sign="positive")
+        if limit > HIGHEST:
+            raise SolveError(f"below must be at most {HIGHEST:g} Hz, got {limit!r}")
         return count_below(self.rope, (2 * math.pi * limit) ** 2)
 
     @waited

@@ -278,7 +278,8 @@ class Request:
 
     def _bands(self, which: Index) -> Iterator[tuple[Index, Between | None]]:
         """Yield lines, and between which others they lie where they are many."""
-        left = list(bands(self.frequency))
+        # inertia far below others would have the roundings of theirs
+        left = list(bands(self.frequency, few=1))
         while left:
             lines = left.pop()
             frequency = self.frequency[lines]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base import check
 from ..base.array import Real
 from ..base.errors import SceneError
 from ..scene.path import value_at, with_values
@@ -45,8 +46,8 @@ def _about(scene: Scene, rope: SpaceRope, path: str, value: float) -> tuple[floa
     """Return the middle of the nodes and how far they reach: all have a meaning."""
     radius = RADIUS * (abs(value) or 1.0)
     if path.endswith(".x"):
-        apart = np.abs(rope.x - value)
-        radius = min(radius, BESIDE * float(apart[apart > 0].min()))
+        apart, same = np.abs(rope.x - value), check.NEAR * scene.rope.length
+        radius = min(radius, BESIDE * float(apart[apart > same].min()))
     for centre in (value, value + radius, value - radius):
         try:
             for sign in (-1, 1):

@@ -27,6 +27,7 @@ NARROW = 1e-13  # Brackets that nothing is found in are an answer themselves.
 BESIDE = 3e-8  # Iteration is at so much from a mode, where solving still tells others from it.
 SETTLED = 2.0  # Shifts of so many times that are the last.
 LADDER = 8.0  # Between the first values that are counted at.
+BOTTOM = 1e16  # What grows this much faster than others move leaves them no digit.
 AT_ONCE = 32  # Groups that are sought together.
 MORE = 3  # Vectors beside those of the modes that are sought.
 
@@ -203,7 +204,7 @@ def _surround(counter: Counter, unit: float, wanted: int | None, below: float) -
     counter.total([low, *ladder])
     while counter.total([low])[0] > 0:
         low *= 64
-        if not math.isfinite(low):
+        if low < -BOTTOM * unit:
             raise SolveError("the stiffness has no lower bound: what is loaded has no mass")
     high = ladder[-1]
     if wanted is None or math.isfinite(below):

@@ -112,6 +112,21 @@ def test_derivatives_where_something_changes_along_the_axis():
         modes.derivative("tension")
 
 
+def test_a_place_beside_which_a_node_lies_by_rounding_has_its_derivative():
+    # 1.8 m is a node, which the lengths of pieces add up to but for rounding
+    rope = rd.Rope(rd.Axis.arc(1.0, 2.0), 1.0, bending_stiffness=1.0, torsional_stiffness=1.0)
+    masses = [rd.PointMass(x, 0.3) for x in (0.56, 0.65, 1.8)]
+
+    def frequencies(off):
+        moved = [*masses[:2], rd.PointMass(1.8 + off, 0.3)]
+        return rd.Scene(rope, planes="both", parts=moved).compile().modes(3).frequency
+
+    by = [frequencies(k * 2e-3) for k in (-2, -1, 1, 2)]
+    differences = (by[0] - 8 * by[1] + 8 * by[2] - by[3]) / (12 * 2e-3)
+    found = rd.Scene(rope, planes="both", parts=masses).compile().modes(3).derivative("parts[2].x")
+    assert found == pytest.approx(differences, rel=1e-7)
+
+
 def test_modes_that_coincide_part_as_the_straight_rope_has_them():
     rope = rd.Rope(1.0, 0.5, bending_stiffness=(50.0, 50.0), torsional_stiffness=30.0)
     scene = rd.Scene(rope, planes="both", tension=10.0)

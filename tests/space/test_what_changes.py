@@ -65,6 +65,39 @@ def test_tension_along_a_catenary():
     assert same.compile().modes(1).frequency == scene.compile().modes(1).frequency
 
 
+@pytest.mark.parametrize(
+    ("change", "loads"), [({"bending_stiffness": (1.0, 1.2)}, []), ({}, [(0.5, 1.0)])]
+)
+def test_a_catenary_that_cannot_be_bent_from_straight_is_as_its_axis(change, loads, tmp_path):
+    axis = rd.Axis.catenary(10.0, parameter=10.0, loads=loads)
+    options = {"bending_stiffness": 1.0, "torsional_stiffness": 1.0} | change
+    rope = rd.Rope(axis, 1.0, **options)
+    assert rope.natural == "axis"
+    assert rope.replace(linear_density=2.0).natural == "axis"
+    with pytest.raises(rd.SceneError, match='natural must be "axis" where'):
+        rope.replace(natural="straight")
+    scene = rd.Scene(rope, planes="both", parts=[rd.PointMass(*one) for one in _hung(axis, loads)])
+    scene.save(tmp_path / "scene.toml")
+    assert rd.Scene.load(tmp_path / "scene.toml") == scene
+
+
+def _hung(axis, loads):
+    """Places and masses."""
+    return [(axis.length * share, mass) for share, mass in loads]
+
+
+def test_what_grows_without_bound_is_refused():
+    rope = rd.Rope(rd.Axis.arc(1.0, 2.0), 1.0, bending_stiffness=1.0, torsional_stiffness=1.0)
+    turned = [rd.Spring(0.5, -20.0, coordinate="alpha")]
+    for one in (rope, rope.replace(shear_stiffness=50.0)):
+        with pytest.raises(rd.SolveError, match="no lower bound: what is loaded has no mass"):
+            rd.Scene(one, planes="both", parts=turned).compile().modes(4)
+    heavy = rope.replace(polar_inertia=1e-3)
+    assert rd.Scene(heavy, planes="both", parts=turned).compile().modes(1).eigenvalue[0] < 0
+    with pytest.raises(rd.SolveError, match=r"below must be at most 1e\+150 Hz"):
+        rd.Scene(rope, planes="both").compile().count(below=1e200)
+
+
 def test_a_stiff_catenary_by_its_responses_and_statics():
     axis = rd.Axis.catenary(30.0, 4.0, parameter=40.0)
     rope = rd.Rope(
