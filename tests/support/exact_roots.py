@@ -59,7 +59,7 @@ def _secant(function, a, b, steps=40):
             return b
         a, b = b, b - fb * (b - a) / (fb - fa)
         fa, fb = fb, function(b)
-    raise ValueError(f"the secant method does not end, at {float(b)!r}")
+    raise ValueError(f"the secant method does not end, at {complex(b)!r}")
 
 
 def frequency(exact, near, within=1e-6):
