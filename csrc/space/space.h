@@ -41,10 +41,11 @@ static inline size_t rd_space_rows(size_t width, int closed)
     return 3 * rd_space_beside(width, closed) + 1;
 }
 
-/* Joints whose inverse has larger entries are not joined: near a resonance of what is on their left. A
-   larger one is taken where too many parts are left: it costs the count as many digits again. */
-enum { RD_SPACE_GENTLE = 2 };
-static const double rd_space_gentle[RD_SPACE_GENTLE] = {1e2, 1e4};
+/* Joints whose inverse has larger entries are not joined: near a resonance of what is on their left. What
+   several lose one after another is multiplied: of 100 each a ring's count lost 6 digits. A larger one is taken
+   where too many parts are left. */
+enum { RD_SPACE_GENTLE = 3 };
+static const double rd_space_gentle[RD_SPACE_GENTLE] = {4, 1e2, 1e4};
 
 /* How fields run along a piece: 2^-halvings of each of its `equal` parts is summed as a series about its
    left end. With nodes = 1 all such parts are alike; with equal 2^halvings of them they are those parts,

@@ -45,6 +45,22 @@ def test_counts_of_a_ring_find_both_of_a_pair():
             assert model.count(below=f * (1 + side)) == 6 + 2 * k + more
 
 
+@pytest.mark.parametrize("place", [0.5, 6.5, 6.75, 7.0, 7.5, 11.0])
+def test_counts_of_a_ring_that_is_cut_anywhere_know_its_pairs(place):
+    # a quarter is 7.02 m: joints that lose two digits each, one by one, counted 1e-9 off there
+    R, C = 4.47, 0.8
+    rope = rd.Rope(rd.Axis.ring(R), 1.0, bending_stiffness=1.0, torsional_stiffness=C)
+    spring = rd.Spring(place, 13.6, coordinate="x")
+    model = rd.Scene(rope, planes="both", parts=[spring]).compile()
+    # the spring does not move where the ring bends across its plane: Love (1927), article 293
+    exact = math.sqrt(4 * 9 / (R**4 * (4 + 1 / C))) / (2 * math.pi)
+    others = model.count(below=exact * (1 - 1e-11))
+    assert model.count(below=exact * (1 + 1e-11)) == others + 2
+    found = model.modes(others + 2)
+    assert found.certified
+    assert (np.abs(found.frequency[-2:] - exact) <= found.rounding_error[-2:]).all()
+
+
 def parts(shift):
     """A ring that three springs hold and a mass loads, all so far along it."""
 
