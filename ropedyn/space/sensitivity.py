@@ -62,6 +62,9 @@ class SpaceSensitivity:
             value, error = self.shapes.eigenvalue[cluster], self.shapes.error[cluster]
             for own in clusters_of(value, error):
                 change[cluster[own]] = np.linalg.eigvalsh(form[np.ix_(own, own)])
+        if (rigid := self.shapes.eigenvalue == 0).any():
+            # nothing is strained: what is left is rounding
+            change[rigid & (np.abs(change) <= self.error(path, "eigenvalue"))] = 0.0
         return change
 
     def frequency(self, path: str) -> Real:

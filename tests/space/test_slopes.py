@@ -127,6 +127,16 @@ def test_a_place_beside_which_a_node_lies_by_rounding_has_its_derivative():
     assert found == pytest.approx(differences, rel=1e-7)
 
 
+def test_rigid_motions_do_not_change_with_a_stiffness():
+    rope = rd.Rope(rd.Axis.arc(1.0, 2.0), 1.0, bending_stiffness=1.0, torsional_stiffness=1.0)
+    model = rd.Scene(rope, planes="both", ends=("free", "free")).compile()
+    modes = model.modes(8)
+    found = modes.derivative("bending_stiffness") + modes.derivative("torsional_stiffness")
+    assert (found[:6] == 0).all()
+    # all stiffness is in these two, and frequencies go with its root
+    assert found[6:] == pytest.approx(modes.frequency[6:] / 2, rel=1e-11)
+
+
 def test_modes_that_coincide_part_as_the_straight_rope_has_them():
     rope = rd.Rope(1.0, 0.5, bending_stiffness=(50.0, 50.0), torsional_stiffness=30.0)
     scene = rd.Scene(rope, planes="both", tension=10.0)
