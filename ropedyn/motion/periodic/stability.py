@@ -46,13 +46,20 @@ def growing(balance: HarmonicBalance, x: Real, omega: float, free: int) -> int |
     before = None
     while harmonics <= fine.samples // 4:
         strip = _Strip(fine, stiff, drag, omega, harmonics)
-        way, D = strip.followed()
+        way, D, size = strip.followed()
         turns = float(np.angle(D[1:] / D[:-1]).sum() / np.pi)
         closes = abs(turns - round(turns)) <= CLOSED / np.pi
-        if closes and before is not None and strip.moved(before, way) <= MOVED:
+        if closes and before is not None and _moved(D, size, *before.at(way)) <= MOVED:
             return free - round(turns)
         harmonics, before = 2 * harmonics, strip
     return None
+
+
+def _moved(D: Complex, size: Real, sign: Complex, other: Real) -> float:
+    """Return how far a multiple of that with fewer harmonics is from D, at most, over D."""
+    with np.errstate(over="ignore"):
+        share = sign / D * np.exp(other - size - np.median(other - size))
+    return float(np.abs(1 - share).max())
 
 
 def _least(balance: HarmonicBalance, by_u: Real, by_v: Real, omega: float) -> int:
@@ -76,10 +83,10 @@ class _Strip:
         self.stiff = stiff[..., pairs].transpose(2, 0, 1, 3)
         self.drag = drag[..., pairs].transpose(2, 0, 1, 3) if drag.any() else None
 
-    def followed(self) -> tuple[Real, Complex]:
-        """Return a way along which D turns little from one place to the next, and D/|D| there."""
+    def followed(self) -> tuple[Real, Complex, Real]:
+        """Return a way on which D turns little between neighbours, D/|D| and ln |D| there."""
         way = self._looks()
-        D = self._signs(way)
+        D, size = self.at(way)
         for _ in range(ROUNDS):
             step = np.angle(D[1:] / D[:-1])
             open_ = np.abs(step) > TURN
@@ -91,17 +98,10 @@ class _Strip:
                 break
             at = np.flatnonzero(open_)
             middle = (way[at] + way[at + 1]) / 2
+            sign, own = self.at(middle)
             way = np.insert(way, at + 1, middle)
-            D = np.insert(D, at + 1, self._signs(middle))
-        return way, D
-
-    def moved(self, coarse: _Strip, way: Real) -> float:
-        """Return how far a multiple of that with fewer harmonics is from D, at most, over D."""
-        here, there = (one._each(way) for one in (self, coarse))
-        size = there[1] - here[1]
-        with np.errstate(over="ignore"):
-            share = there[0] / here[0] * np.exp(size - np.median(size))
-        return float(np.abs(1 - share).max())
+            D, size = np.insert(D, at + 1, sign), np.insert(size, at + 1, own)
+        return way, D, size
 
     def _looks(self) -> Real:
         """Return where D is looked at first: also where H changes, folded into the strip."""
@@ -112,10 +112,7 @@ class _Strip:
         looks = np.unique(np.concatenate([np.linspace(0.0, half, LOOKS), away]))
         return looks[np.append(True, np.diff(looks) > 1e-12 * half)]
 
-    def _signs(self, nu: Real) -> Complex:
-        return self._each(nu)[0]
-
-    def _each(self, nu: Real) -> tuple[Complex, Real]:
+    def at(self, nu: Real) -> tuple[Complex, Real]:
         """Return D/|D| and ln |D| at s = i nu."""
         m, n = self.balance.points, len(self.k)
         most = max(1, BATCH // (m * n) ** 2)
