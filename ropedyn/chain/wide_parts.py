@@ -18,6 +18,7 @@ WIRE = ATTACHED.index("broken wire")
 AMPLIFIED = 4.0  # Joints that move more than so many times what their ends do are not joined.
 REACH = 0.5  # Series begin at pieces across which nothing changes by more.
 GROWS = 0.125  # Nor does the tension of a string: its series go on as powers of that.
+CUT = 12  # An element is cut in half as often as this at most, whatever moves within.
 FADED = 0.5  # What of a motion arrives at the other end; of less, I + D has not all digits.
 TERMS = 24  # REACH^24/24! is nothing at 64 digits of 2, and at 113 with 10 more terms.
 
@@ -206,7 +207,7 @@ def pieces_of(f: Frame, e: int, patient: bool) -> list[Triple]:
     piece = summed(E, length / 2**halvings)
     for k in range(halvings):
         joined, M = join(piece, piece, None)
-        if patient and not is_calm(M):
+        if patient and not is_calm(M) and halvings - k <= CUT:
             return [piece] * 2 ** (halvings - k)
         piece = joined
     return [piece]
