@@ -28,7 +28,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 ROOT = Path(__file__).parent.parent
-COPIED = ("ropedyn", "csrc", "tests", "pyproject.toml", "setup.py", "README.md")
+COPIED = ("ropedyn", "csrc", "tests", "docs", "pyproject.toml", "setup.py", "README.md")
 UNASKED = "not code_of_an_effect and not notebook and not c_tests_pass and not figures_are_drawn"
 """Tests of many seconds that see everything, and the C tests, which are asked one by one."""
 SUFFIX = sysconfig.get_config_var("EXT_SUFFIX")
@@ -44,6 +44,9 @@ CHAPTERS = {
     "damped": ("eigen", "response"),
     "element": ("chain", "response", "eigen"),
     "energy": ("eigen", "response", "chain"),
+    "graded": ("chain", "response", "eigen"),
+    "law": ("motion",),
+    "space": ("space", "axis"),
     "glue": ("project", "response", "eigen", "motion", "family", "chain"),
     "volterra": ("motion",),
     "mixed": ("chain", "response", "motion"),
@@ -135,7 +138,7 @@ def survey_python(work):
     """Run the tests under coverage, a context for each: .coverage and python.xml."""
     (work / ".coveragerc").write_text("[run]\nsource=ropedyn\ndynamic_context=test_function\n")
     command = [sys.executable, "-m", "coverage", "run", *PYTEST]
-    command += ["--junitxml=python.xml", "tests"]
+    command += ["--junitxml=python.xml", "--ignore=tests/c", "tests"]
     subprocess.run(command, cwd=work, env=environment_of(work), check=False)
 
 
