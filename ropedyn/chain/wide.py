@@ -42,6 +42,7 @@ PI = Number("3.141592653589793238462643383279502884197")
 FINE = 32 * float(np.finfo(Number).eps)  # How far wide numbers are moved to see what that does.
 COARSE = 2 * float(np.finfo(float).eps)  # How far those that are known as doubles alone are.
 SLIGHT = float(np.finfo(float).eps)  # How far doubles are moved so that all rounds otherwise.
+RUNS = 16  # Answers are found again so many times, of doubles that are a little off.
 SEEDS = (1, 2)  # Numbers are moved so many times,
 SURE = 8.0  # and what that does is taken so many times.
 SPARE = 1 / 64  # A wide value's own error is less than this part of what is measured.
@@ -85,9 +86,18 @@ def moved(array: Array, amount: float, random: np.random.Generator, square: bool
 
 def nudged(array: Array, random: np.random.Generator) -> Array:
     """Return doubles with relative errors, the same where numbers are the same."""
-    value, which = np.unique(array, return_inverse=True)
-    off = 1 + SLIGHT * random.uniform(-1, 1, len(value))
-    return np.asarray((value * off)[which].reshape(np.shape(array)))
+    size, which = np.unique(np.abs(array), return_inverse=True)
+    off = 1 + SLIGHT * random.uniform(-1, 1, len(size))
+    return np.asarray(array * off[which].reshape(np.shape(array)))
+
+
+def apart(value: Array, every: Array) -> Array:
+    """Bound the error of an answer by answers to numbers that are a little off, (RUNS, ..)."""
+    mean = every.mean(axis=0)
+    least = 2 * SLIGHT * np.abs(value)  # what differs by next to nothing is rounded all the same
+    return np.asarray(
+        (1 + SPARE) * np.abs(value - mean) + 2 * np.abs(every - mean).max(axis=0) + least
+    )
 
 
 def nudged_chain(chain: Chain, seed: int) -> Chain:

@@ -71,7 +71,8 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         Absolute error of the frequency that rounding causes [Hz]; of growth/2 pi where motion
         grows. Measured when it is read, as the distance to the same mode in wider numbers with
         their own error, which takes some milliseconds a mode; where these do not tell, as of
-        rigid-body motion or where a string has no tension at an end, `rounding_bound`.
+        rigid-body motion or where a string has no tension at an end, `rounding_bound`. On an axis
+        told by 16 answers for numbers that are a little off.
     rounding_bound : ndarray, shape (k,)
         A bound of that to first order, known at once and some 80 times as large [Hz].
     mesh_error : ndarray, shape (k,)

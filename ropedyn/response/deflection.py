@@ -50,7 +50,8 @@ class Deflection(Answer):
     rounding_error : ndarray, shape (nodes, coordinates)
         What rounding did to the displacement, measured when it is read as the distance to the same
         deflection in wider numbers with their own error [m, rad]; where these do not tell, as
-        where a string has no tension at an end, `rounding_bound`.
+        where a string has no tension at an end, `rounding_bound`. On an axis both are told by 16
+        deflections for numbers that are a little off, infinite where one of them is singular.
     force_rounding_error : ndarray, shape (nodes, coordinates)
         The same of the forces, which are what the rope beside a node leaves of its forces [N, N m].
     rounding_bound : ndarray, shape (nodes, coordinates)

@@ -30,10 +30,11 @@ from ..chain.compile import dragged
 from ..chain.compiled import Compiled
 from ..chain.port import Point, moving
 from ..chain.rate import ENTRIES, Places, Rate, Weights, asked, rates_of
-from ..chain.wide import SLIGHT, nudged
+from ..chain.wide import RUNS, SLIGHT, apart, nudged
 from ..scene import damping
 from ..scene.damping import Damping
 from .fields import Fields, PairSlopes
+from .measured import measured
 from .modal_sum import ModalParts, sum_slope
 from .moved_end import is_end
 from .question import Question
@@ -42,8 +43,7 @@ from .solvers import in_slices
 
 TENSION, LENGTH, SAG, INERTIA = 6, 7, 8, 9
 """Numbers of these slopes of an element, behind those of its section."""
-RUNS = 16  # Derivatives are found again so many times, of numbers that are a little off,
-DEVIATIONS = 3.0  # and the truth is no further from their mean than so many deviations of one.
+OF_WIRES = 4.0  # Numbers of wires, which are made of several, may be so many roundings off.
 Term = tuple[Complex, Real, Any]  # slopes (pairs, .., f), how fast what they are by changes, factor
 SLICE = 1 << 19  # Numbers of the fields of one call of the core: a look for Ctrl-C between them.
 
@@ -294,33 +294,41 @@ class FrequencyRates:
         weights = asked(self.paths, path)().weights(self.places)
         own = [self._unit(*self._dampings[path])] if path in self._dampings else []
         value, components = np.zeros_like(self.value), self.components
-        if seed is not None:
-            random = np.random.default_rng(seed)
+        random = None if seed is None else np.random.default_rng(seed)
+        if random is not None:
             off = {
                 f.name: nudged(getattr(weights, f.name), random)
                 for f in dataclasses.fields(weights)
             }
             weights = dataclasses.replace(weights, **off)
             components = [component.nudged(random) for component in components]
-        spread = tip.spread(self.model, self.responses)
         for (question, parts), component in zip(self.answered, components):
             lines = component.fields.question
             by_p = (damping.factors(own, lines.omega) - damping.factors([], lines.omega)).T
             found = component.receptance(weights, by_p)
             if parts is not None:
-                found = sum_slope(parts, found, float(damping.ratios(own, 1)[0]))
-            d = [k for k, point in enumerate(self.drives) if moving(point) in question.component]
-            r = [k for k, point in enumerate(spread) if moving(point) in question.component]
-            value[np.ix_(d, r)] = found
-        return self._at_tips(weights, own, value)
+                own_parts = parts if random is None else parts.nudged(random)
+                found = sum_slope(own_parts, found, float(damping.ratios(own, 1)[0]))
+            value[self._places_of(question)] = found
+        return self._at_tips(weights, own, value, random)
 
-    def _at_tips(self, weights: Weights, own: Sequence[Damping], value: Complex) -> Complex:
+    def _at_tips(
+        self,
+        weights: Weights,
+        own: Sequence[Damping],
+        value: Complex,
+        random: np.random.Generator | None,
+    ) -> Complex:
         """Take roots together to tips, t^T u/e of which both change."""
         if not any(map(tip.is_tip, self.responses)):
             return value
-        omega = self.omega
+        omega, at_roots = self.omega, self.value
         factor = np.ascontiguousarray(damping.factors(self.model.scene.dampings, omega).T)
         more = (damping.factors(own, omega) - damping.factors([], omega))[:, damping.INERTIA]
+        if random is not None:
+            factor[damping.INERTIA] *= 1 + OF_WIRES * EPS * random.uniform(-1, 1, len(omega))
+            off = random.uniform(-1, 1, (2, *at_roots.shape))
+            at_roots = at_roots + self._unsure * (off[0] + 1j * off[1] * (at_roots.imag != 0))
         inertia = factor[damping.INERTIA]
         lighter = np.divide(-more, inertia, out=np.zeros_like(more), where=inertia != 0)
         changed = tip.gather(self.model, self.responses, factor, value)
@@ -328,11 +336,28 @@ class FrequencyRates:
         for r, point in enumerate(self.responses):
             count = len(tip.tip_of(self.model, point).root) if tip.is_tip(point) else 1
             if tip.is_tip(point):
-                root = self.value[:, at : at + count]
+                root = at_roots[:, at : at + count]
                 slope = tip.row_slope(self.model, point, factor, weights, lighter)
                 changed[:, r] += np.einsum("cf,dcf->df", slope, root)
             at += count
         return changed
+
+    @computed
+    def _unsure(self) -> Real:
+        """What of the value is rounding, infinite where there are no wider numbers."""
+        error = np.full(self.value.shape, np.inf)
+        for question, _ in self.answered:
+            at = self._places_of(question)
+            found = measured(question, self.value[at])
+            error[at] = np.inf if found is None else found.error
+        return error
+
+    def _places_of(self, question: Question) -> Any:
+        """Return what of the value a question is about."""
+        asked = self.drives, tip.spread(self.model, self.responses)
+        return np.ix_(
+            *([k for k, p in enumerate(of) if moving(p) in question.component] for of in asked)
+        )
 
     def of(self, path: str, quantity: str) -> Complex:
         """Return the derivative of a quantity, shape (drives, responses, f)."""
@@ -341,10 +366,6 @@ class FrequencyRates:
     def error(self, path: str, quantity: str) -> Real:
         """Return the error of that, shape (drives, responses, f): see docs/theory/errors.md."""
         value = self.receptance(path)
-        if any(parts is not None for _, parts in self.answered):
-            return np.full(value.shape, np.inf)
         every = np.stack([self.receptance(path, seed) for seed in range(RUNS)])
-        mean = every.mean(axis=0)
-        error = np.abs(value - mean) + DEVIATIONS * every.std(axis=0) + EPS * np.abs(value)
-        error[:, list(map(tip.is_tip, self.responses))] = np.inf
+        error = np.nan_to_num(apart(value, every), nan=np.inf)
         return np.asarray(error * np.abs(self.omega) ** QUANTITIES[quantity])

@@ -32,8 +32,8 @@ from .question import Bound, Question, Solver
 
 REACH, LEAST, MOST = 8.0, 64, 5_000
 """Modes below so many times the highest frequency are summed up, at least and at most so many."""
-ROUND, NEAR = 16, 1 / 8
-"""A circle has so many points, and this part of the distance to the next mode as its radius: 8^-16
+ROUND, NEAR = 16, 1 / 16
+"""A circle has so many points, and this part of the distance to the next mode as its radius: 16^-16
 of that mode is seen."""
 ALIKE = 2.0**-26  # Eigenvalues that differ by the root of eps are one: apart they would lose more.
 TOGETHER = 8  # The own responses of so many points are computed at once.
@@ -91,7 +91,16 @@ class ModalParts(NamedTuple):
     question: Question  # that it answers
     lines: Question  # to the undamped model, about what it is made of
     poles: UndampedPoles
-    residue: Real  # (drives, responses, k)
+    residue: Estimated  # (drives, responses, k)
+
+    def nudged(self, random: np.random.Generator) -> ModalParts:
+        """Return those with residues and eigenvalues as far off as they may be, circles kept."""
+        poles, (residue, error) = self.poles, self.residue
+        own = poles.eigenvalue + poles.error * random.uniform(-1, 1, len(poles.eigenvalue))
+        residue = residue + error * random.uniform(-1, 1, residue.shape)
+        return self._replace(
+            poles=poles._replace(eigenvalue=own), residue=Estimated(residue, error)
+        )
 
 
 def modal_sum(question: Question, solver: Solver) -> Summed:
@@ -120,7 +129,7 @@ def modal_sum(question: Question, solver: Solver) -> Summed:
     share = (np.abs(omega) ** 2 + poles.shift) / (poles.probe - poles.shift)
     neglected = np.maximum(size[..., None] * _most(poles, omega), missing * share)
     lines = (2 + ROUND // 2 * len(poles.eigenvalue)) * (1 + -(-len(own) // TOGETHER))
-    parts = ModalParts(question, undamped_lines(question, poles), poles, residue.value)
+    parts = ModalParts(question, undamped_lines(question, poles), poles, residue)
     return Summed(value, lambda: error, neglected, lines, parts)
 
 
@@ -143,7 +152,7 @@ def sum_slope(parts: ModalParts, by_p: Complex, ratio: float) -> Complex:
         g, by_pole, by_ratio = _weight_slopes(poles, omega[part])
         value[..., part] = by_p[..., -2].real[..., None] + residue @ g + moved @ by_pole
         if ratio:
-            value[..., part] += ratio * (parts.residue @ by_ratio)
+            value[..., part] += ratio * (parts.residue.value @ by_ratio)
     return value
 
 

@@ -16,6 +16,7 @@ from ..base.array import Index, Real
 from ..base.computed import Late, computed
 from ..base.errors import SceneError, SolveError
 from ..base.unit import FAMILY
+from ..chain.wide import RUNS, apart
 from ..eigen.eigen import check_asked, no_mesh
 from ..eigen.modes import Modes, OnCatenary, UndampedMesh, UndampedVectors
 from ..eigen.spectrum import error_in_hertz
@@ -66,7 +67,7 @@ def solve_modes(
         frequency=frequency,
         eigenvalue=value,
         growth=np.sqrt(np.maximum(-value, 0.0)),
-        rounding_error=error_in_hertz(value, found.error),
+        rounding_error=Late(lambda: error_in_hertz(value, shapes.unsure())),
         rounding_bound=error_in_hertz(value, found.error),
         plane=Late(lambda: shapes.plane),
         cost=Cost(method_of(scene), len(rope.length), rope.unknowns, sweeps=found.counts),
@@ -136,6 +137,31 @@ class SpaceShapes:
         found = Lowest(self.eigenvalue, self.error, self.component, 0)
         return SpaceShapes(self.scene, rope, self.eigenvalue, found, 1)
 
+    def unsure(self) -> Real:
+        """Bound what rounding did to eigenvalues by those of numbers that are a little off."""
+        every = []
+        for random in map(np.random.default_rng, range(RUNS)):
+            one = self.on(self.rope.nudged(random)[0])
+            try:
+                every.append(one.again(random.uniform(0.5, 1.0)))
+            except SolveError:  # of parts that end at a resonance
+                return self.error
+        found = apart(self.eigenvalue, np.stack(every))
+        # motions that nothing strains are told to be 0
+        small = (found < self.error) & (self.eigenvalue != 0)
+        return np.where(small, found, self.error)
+
+    def again(self, nearer: float) -> Real:
+        """Return the eigenvalues found once more, from closer by."""
+        found = np.full(len(self.eigenvalue), np.nan)
+        for clusters, (which, means, beside, z) in self._lines():
+            at = means + nearer * beside
+            system = self._assembled(self.rope, (which, unforced(at, STEP), z))
+            sizes = [len(one) for one in clusters]
+            for k, near in enumerate(ritz(system, start(system, max(sizes) + MORE), sizes)):
+                found[clusters[k]] = at[k] + near.shift
+        return found
+
     def clusters(self) -> Iterator[Index]:
         """Yield the numbers of modes that are found together."""
         for component in np.unique(self.component):
@@ -148,7 +174,16 @@ class SpaceShapes:
     def batches(self) -> list[ShapeBatch]:
         """Vectors of unit mass of modes that are found together, so many clusters at a time."""
         self._refuse_still()
-        every, found = list(self.clusters()), []
+        found = []
+        for clusters, (which, means, beside, z) in self._lines():
+            system = self._assembled(self.rope, (which, unforced(means + beside, STEP), z))
+            own = self._found(system, [len(one) for one in clusters])
+            found.append(ShapeBatch(clusters, system, own, (which, unforced(means), z)))
+        return found
+
+    def _lines(self) -> Iterator[tuple[list[Index], tuple[Index, Real, Real, Real]]]:
+        """Yield clusters, whose they are, where, how far beside they are sought, and scales."""
+        every = list(self.clusters())
         for first in range(0, len(every), AT_ONCE):
             clusters = every[first : first + AT_ONCE]
             means = np.array([self.eigenvalue[one].mean() for one in clusters])
@@ -156,12 +191,7 @@ class SpaceShapes:
             near = BESIDE_FEET if self.rope.carried else BESIDE
             beside = np.maximum(8 * spread, near * np.maximum(np.abs(means), self.rope.unit))
             which = self.component[[one[0] for one in clusters]]
-            z = self.rope.scale(which, means)
-            factors = unforced(means + beside, STEP)
-            system = self._assembled(self.rope, (which, factors, z))
-            own = self._found(system, [len(one) for one in clusters])
-            found.append(ShapeBatch(clusters, system, own, (which, unforced(means), z)))
-        return found
+            yield clusters, (which, means, beside, self.rope.scale(which, means))
 
     def _assembled(self, rope: SpaceRope, lines: Any) -> Assembly:
         which, factors, z = lines

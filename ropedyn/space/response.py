@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import Any, NamedTuple
 
@@ -14,10 +14,11 @@ from ..base import check
 from ..base.answer import Cost
 from ..base.array import Complex, Index, Real
 from ..base.computed import Late, computed
-from ..base.errors import SceneError
+from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES, WIRE
 from ..chain.place import moved_end
 from ..chain.port import Point, is_force, moving
+from ..chain.wide import RUNS, SLIGHT, apart
 from ..response.bands import bands, is_many
 from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ..response.question import OnResonance
@@ -32,6 +33,7 @@ from .rope import SIX, Factors, SpaceRope
 AT_ONCE = 128  # Lines are assembled together at most,
 FIRST = 16  # so many at first,
 TOGETHER = 1 << 17  # and of their parts so many.
+MOST_WORK = 1 << 17  # Lines times pieces of one answer beyond which rounding is bounded alone.
 
 
 def checked_points(
@@ -96,8 +98,11 @@ def solve_frf(
 
     @cache
     def rounding() -> RoundingOfResponse:
+        return RoundingOfResponse.of(value, (asked.error(receptance) * np.abs(power))[answered])
+
+    def bounded() -> Real:
         limit = (asked.rounding() * np.abs(power))[answered]
-        return RoundingOfResponse.of(value, limit)
+        return RoundingOfResponse.of(value, limit).rounding_error
 
     def mesh() -> MeshOfResponse:
         finer = finer_rope(scene, rope)
@@ -122,7 +127,7 @@ def solve_frf(
             factorisations=len(f) * len(asked.components),
         ),
         rounding=Late(rounding),
-        rounding_bound=Late(lambda: rounding().rounding_error),
+        rounding_bound=Late(bounded),
         mesh=mesh,
         solve_rates=_refuse_rates,
         decay=decay,
@@ -233,6 +238,35 @@ class Request:
             # a response that pushes what nothing holds, where no drive does, has no bound
             limit[side.at(lines)] = np.where(np.isfinite(moved), moved, np.inf)
         return limit
+
+    def error(self, value: Complex) -> Real:
+        """Bound what rounding did to a receptance by those of numbers that are a little off."""
+        limit, work = self.rounding(), len(self.frequency) * len(self.rope.length)
+        if work > MOST_WORK:
+            return limit
+        try:
+            every = [self.nudged(np.random.default_rng(seed)).receptance() for seed in range(RUNS)]
+        except SolveError:  # as close to a resonance as numbers are known
+            return limit
+        found = apart(value, np.stack(every))
+        return np.where(found < limit, found, limit)
+
+    def nudged(self, random: np.random.Generator) -> Request:
+        """Return the question of a rope and of factors that are a little off."""
+        rope, at = self.rope.nudged(random)
+        off = 1 + SLIGHT * random.uniform(-1, 1, len(Factors._fields))
+
+        def moved(factors: Factors) -> Factors:
+            return Factors(*(one * by for one, by in zip(factors, off)))
+
+        asked = self.factors_at
+        return replace(
+            self,
+            rope=rope,
+            factors=moved(self.factors),
+            node=(at[self.node[0]], at[self.node[1]]),
+            factors_at=asked and (lambda frequency: moved(asked(frequency))),
+        )
 
     @property
     def _shape(self) -> tuple[int, int, int]:

@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base.array import Complex, Flags, Index, Real
+from ..base.check import NEAR
 from ..base.computed import computed
+from ..chain.wide import SLIGHT, nudged
 from .samples import coefficients, resampled, series_of
 
 SIX = ("x", "y", "z", "alpha", "beta", "gamma")
@@ -172,6 +174,17 @@ class SpaceRope:
         share = self.share[piece] * (inside[1] - inside[0])
         cut = replace(self, length=np.diff(stations), share=share, **arrays)
         return cut, cut.node_at(places)
+
+    def nudged(self, random: np.random.Generator) -> tuple[SpaceRope, Index]:
+        """Return it with every number a little off and cut elsewhere, and where its nodes are."""
+        x, near = self.x, NEAR * self.length.sum()
+        one, _ = self.cut(x[:-1] + random.uniform(0.2, 0.8, len(x) - 1) * self.length, near)
+        off: dict[str, Any] = {k: nudged(getattr(one, k), random) for k in ("length", *MATRICES)}
+        # entries of a rotation are as sure as its largest
+        turned = (one.turn != np.eye(6)).any((1, 2))[:, None, None] & (one.turn != 0)
+        off["turn"] = one.turn + turned * SLIGHT * random.uniform(-1, 1, one.turn.shape)
+        wires = tuple(w._replace(rope=w.rope.nudged(random)[0]) for w in one.carried)
+        return replace(one, **off, carried=wires), np.searchsorted(one.x, x - near)
 
     def node_at(self, places: ArrayLike) -> Index:
         """Return the nodes next to places [m]."""

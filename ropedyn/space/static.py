@@ -13,15 +13,18 @@ from ..base.array import Flags, Index, Real
 from ..base.computed import Late
 from ..base.errors import SolveError
 from ..chain.port import Point
+from ..chain.wide import RUNS, apart
 from ..eigen.vectors import within
 from ..response.critical import exceeds
 from ..response.deflection import POINTS, Deflection, summed_loads
 from ..scene.scene import Scene
-from .assembly import ROUNDINGS, Assembly, LoadedFields, assemble, bound
+from .assembly import Assembly, LoadedFields, assemble
 from .compile import finer_rope, method_of
 from .modes import check_points
 from .rope import SIX, SpaceRope, unforced
 from .spectrum import growing, start
+
+NOTHING = 2.0**-80  # Of the largest of an answer: what rounding makes of a rounding.
 
 
 def refuse_growing(rope: SpaceRope, instead: str) -> None:
@@ -60,11 +63,19 @@ def solve_static(
         return np.abs(displacement - there)[:, own]
 
     @cache
-    def rounding() -> tuple[Real, Real]:
-        limits = np.zeros((2, *displacement.shape))
-        for one in solved:
-            limits[:, :, one.own] = one.rounding()
-        return limits[0][:, own], limits[1][:, own]
+    def rounding() -> Any:
+        every = np.zeros((2, RUNS, *displacement.shape))
+        for k in range(RUNS):
+            moved, node = cut.nudged(np.random.default_rng(k))
+            try:
+                parts = _under(moved, along)
+            except SolveError:  # as close to a critical load as numbers are known
+                return np.full((2, *shape), np.inf)
+            for one in parts:
+                every[0, k][:, one.own] = one.displacement[node]
+                every[1, k][:, one.own] = one.force[node]
+        found = zip((displacement, force), every)
+        return [(apart(v, e) + NOTHING * np.abs(v).max())[:, own] for v, e in found]
 
     return Deflection(
         coordinates=rope.coordinates,
@@ -113,42 +124,6 @@ class LoadedPart(NamedTuple):
             held[0] += held[-1]
         force = np.where(self.system.held[0, :, :, None], held, p - N @ u)
         return np.asarray(force[self.system.node, :, 0] / self.system.z[0])
-
-    def rounding(self) -> tuple[Real, Real]:
-        """Bound what rounding does to displacement and force, shape (nodes, width) each."""
-        system, nodes, w = self.system, len(self.system.node), self.system.width
-        unit = np.zeros((system.parts + 1, w, w * nodes))
-        along = np.tile(np.arange(w), nodes)
-        unit[np.repeat(system.node, w), along, np.arange(w * nodes)] = 1.0
-        moved = bound(system, self.field, _solved(system, unit))[0, 0].reshape(nodes, w)
-        moved[self.held] = 0.0
-        if system.closed:
-            moved[-1] = moved[0]
-        size = np.abs(system.N[0, system.node])
-        pressed = (size @ moved[:, :, None])[:, :, 0]
-        # p - N u itself, whose terms have a rounding each
-        terms = np.abs(self.field.load[0]) + np.abs(system.N[0]) @ np.abs(self.field.u[0])
-        pressed += ROUNDINGS * np.finfo(float).eps * terms[system.node, :, 0]
-        there = np.nonzero(self.held & ~system.absent[0])
-        pressed[self.held] = 0.0
-        if len(there[0]):
-            pressed[there] = bound(system, self.field, self._moving(*there))[0, 0]
-            # the force of what is on the left of a node, which has no entry of a part beside it
-            left = np.linalg.norm(self.field.f[0, :, :, 0], axis=1)
-            left = np.concatenate([[0.0], left])[system.node[there[0]]]
-            pressed[there] += ROUNDINGS * np.finfo(float).eps * left
-        return moved * system.z[0], pressed / system.z[0]
-
-    def _moving(self, node: Index, along: Index) -> LoadedFields:
-        """Return the fields of held coordinates that move by 1 each, which tell their forces."""
-        system = self.system
-        e = np.zeros((1, system.parts + 1, system.width, len(node)))
-        e[0, system.node[node], along, np.arange(len(node))] = 1.0
-        if system.closed:
-            e[0, -1] = e[0, 0]
-        x = system.together(e, np.zeros((1, system.parts, *e.shape[2:])))
-        x = x + system.factored().solve(-system.apply(x).real)
-        return LoadedFields(*system.apart(x), 0 * e)
 
 
 def _under(rope: SpaceRope, loads: dict[Point, float]) -> list[LoadedPart]:

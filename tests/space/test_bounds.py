@@ -12,6 +12,7 @@ from ropedyn.base import check
 from ropedyn.chain.port import Point
 from ropedyn.eigen.vectors import within
 from ropedyn.space.assembly import assemble
+from ropedyn.space.modes import SpaceShapes
 from ropedyn.space.response import Request
 from ropedyn.space.rope import ALL, unforced
 from ropedyn.space.spectrum import Counter, lowest
@@ -20,6 +21,8 @@ pytestmark = pytest.mark.skipif(wide_space.DIGITS < 63, reason="wide numbers are
 
 WIDE = "the same equations in numbers of 64 binary digits, by parts that are divided elsewhere"
 NONE_BEYOND = "of the bound that the answer states, and none may be beyond it"
+TIGHT = 1 / 16
+"""Of 10^4 responses, 10^4 deflections and 10^3 modes errors are 1/8 to 1/12 of it in the median."""
 
 
 def response_ratios(rng, lines=24):
@@ -43,8 +46,10 @@ def response_ratios(rng, lines=24):
 
 def mode_ratios(rng, number=8, scene=random_axes.scene):
     """Errors over their bounds: eigenvalues that lie apart from others."""
-    model = scene(rng).compile()
-    rope, found = model.rope, lowest(model.rope, number, math.inf)
+    scene = scene(rng)
+    rope = scene.compile().rope
+    found = lowest(rope, number, math.inf)
+    bound = SpaceShapes(scene, rope, found.eigenvalue, found, 1).unsure()
     ratios = []
     for k in range(len(rope.own)):
         own = np.flatnonzero(found.component == k)
@@ -55,7 +60,7 @@ def mode_ratios(rng, number=8, scene=random_axes.scene):
         if alone.any():
             exact = wide_space.eigenvalues(rope, k, value[alone])
             error = np.abs(exact - value[alone]).astype(float)
-            ratios.append(error / found.error[own][alone])
+            ratios.append(error / bound[own][alone])
     return np.concatenate(ratios) if ratios else np.zeros(0)
 
 
@@ -97,19 +102,32 @@ def some(ratios_of, number, seed):
 def test_bounds_of_responses_cover_what_rounding_does():
     found = some(response_ratios, 1000, 0)
     assert found.max() < 1
-    assert np.median(found) > 1e-3  # 1 %
+    assert np.median(found) > TIGHT
 
 
 def test_bounds_of_modes_cover_what_rounding_does():
     found = some(mode_ratios, 60, 1)
     assert found.max() < 1
-    assert np.median(found) > 2e-3  # 2 %
+    assert np.median(found) > TIGHT
 
 
 def test_bounds_of_deflections_cover_what_rounding_does():
     found = some(static_ratios, 1000, 4)
     assert found.max() < 1
-    assert np.median(found[found > 0]) > 1e-3
+    assert np.median(found[found > 0]) > TIGHT
+
+
+@pytest.mark.parametrize("aside", [3e-4, 1e-7])
+def test_a_corner_passes_on_the_little_that_it_leaves(aside):
+    # 1 + D of a turn that is nearly right has roundings of 1, the same however numbers are moved
+    axis = rd.Axis.points([[0, 0, 0], [1, 0, 0], [1 + aside, 0.2, 1]])
+    rope = rd.Rope(axis, 0.2, bending_stiffness=40.0, torsional_stiffness=10.0, axial_stiffness=1e7)
+    model = rd.Scene(rope, planes="both", ends=("free", "clamped")).compile()
+    loads: dict[Point, float] = {("z", 1.3): -0.4, ("y", 0.2): 1.0}
+    found = model.static(loads, points=2)
+    cut, _ = model.rope.cut(found.x, check.NEAR * rope.length)
+    exact = wide_space.deflection(cut, loads)[0][:, ~cut.absent]
+    assert (np.abs(found.displacement - exact) <= found.rounding_error).all()
 
 
 def test_bounds_of_ropes_under_torque_cover_what_rounding_does():
@@ -136,7 +154,9 @@ def test_no_part_is_longer_than_a_quarter_wave():
     wide=NONE_BEYOND,
 )
 def test_bounds_of_many_responses_cover_what_rounding_does(claim):
-    claim(some(response_ratios, 10_000, 100).max())
+    found = some(response_ratios, 10_000, 100)
+    assert np.median(found) > TIGHT
+    claim(found.max())
 
 
 @pytest.mark.slow
@@ -147,7 +167,9 @@ def test_bounds_of_many_responses_cover_what_rounding_does(claim):
     wide=NONE_BEYOND,
 )
 def test_bounds_of_many_deflections_cover_what_rounding_does(claim):
-    claim(some(static_ratios, 10_000, 102).max())
+    found = some(static_ratios, 10_000, 102)
+    assert np.median(found[found > 0]) > TIGHT
+    claim(found.max())
 
 
 @pytest.mark.slow
@@ -158,7 +180,9 @@ def test_bounds_of_many_deflections_cover_what_rounding_does(claim):
     wide=NONE_BEYOND,
 )
 def test_bounds_of_many_modes_cover_what_rounding_does(claim):
-    claim(some(mode_ratios, 1000, 101).max())
+    found = some(mode_ratios, 1000, 101)
+    assert np.median(found) > TIGHT
+    claim(found.max())
 
 
 def counts_contradict(rng):
