@@ -248,7 +248,7 @@ def _check_hanging(scene: Described, axis: Axis) -> None:
 def _check_loads(scene: Described, axis: Axis) -> None:
     """Refuse weights on a catenary that hangs as if there were others."""
     density, long = scene.rope.linear_density, axis.length
-    carried = dict(zip(axis.joints[1:-1], jumps(axis.pieces)))
+    carried = dict(zip(axis.joints[1:-1].tolist(), map(float, jumps(axis.pieces))))
     weighs = dict.fromkeys(carried, 0.0)
     stands: list[Any] = [part for part in scene.parts if getattr(part, "mass", 0.0)]
     for part in stands:

@@ -157,7 +157,8 @@ def test_a_row_keeps_its_bits_in_any_company_and_on_any_threads():
     np.testing.assert_array_equal(alone.derivative, whole.derivative[5:6])
 
 
-def test_all_components_of_a_rope_take_part():
+@pytest.mark.parametrize("end", [0, 1])
+def test_all_components_of_a_rope_take_part(end):
     rope = rd.Rope(
         2.0,
         0.3,
@@ -167,8 +168,8 @@ def test_all_components_of_a_rope_take_part():
         axial_stiffness=1e4,
     )
     sprung = rd.End(alpha="free", x="free", spring={"x": 300.0, "alpha": 0.1})
-    scene = rd.Scene(rope, tension=50.0, ends=("pinned", sprung))
-    paths = ["torsional_stiffness", "axial_stiffness", "ends[1].spring.alpha", "polar_inertia"]
+    scene = rd.Scene(rope, tension=50.0, ends=("pinned", sprung)[:: 1 if end else -1])
+    paths = ["torsional_stiffness", "axial_stiffness", f"ends[{end}].spring.alpha", "polar_inertia"]
     family = scene.family(paths)
     values = np.array([[0.02, 1e4, 0.1, 1e-5], [0.4, 50.0, INF, 1e-4]])
     found = family.modes(values, 12, derivative=True)

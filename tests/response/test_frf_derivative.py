@@ -398,3 +398,12 @@ def test_paths_and_places_are_checked(tmp_path):
     frf.save(tmp_path / "frf.nc")
     with pytest.raises(rd.SceneError, match="a response from a file or from motion over time has"):
         rd.load(tmp_path / "frf.nc").derivative("tension")
+
+
+def test_tip_changes_with_the_place_that_its_wire_is_moved_to():
+    """The root is the load of the response, and stands where the scene changes."""
+    wire = rd.BrokenWire(LENGTH / 2, 0.1, 1e-3, radius=0.0, damping_ratio=0.01)
+    model = HELD.replace(parts=[wire]).compile()
+    frf = model.frf([20.0, 140.0], drive=("z", 0.25), response=("wire", 0))
+    expected = frf_difference(model, "parts[0].x", frf.frequency, frf.drive, frf.response)
+    assert error(frf.derivative("parts[0].x"), expected) < 2 * QUOTIENT

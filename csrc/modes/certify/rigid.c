@@ -27,7 +27,6 @@ static void gather(size_t w, double *row, double R[W][W])
             R[i][j] = c * x + s * y;
             row[j] = c * y - s * x;
         }
-        row[i] = 0;
     }
 }
 

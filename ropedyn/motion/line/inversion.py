@@ -53,7 +53,7 @@ NEAR = np.array([1.0, 2.0, FAR, 2 * FAR])  # Modes beyond it are told apart by s
 GROWS = 2.0**0.25  # What grows by this with the rate has no bound
 STRONG = 1e-3  # where it is more than this part of the largest value.
 SOON = 1e-6  # What jumps is there from so much before on, over the rate far beyond all modes.
-LOST = 50.0  # Times the tolerance: an error that twice the rates rarely mend.
+LOST = 10.0  # Times the tolerance: an error that twice the rates rarely mend.
 REACH = 4.0  # They reach so many times as far as the forces do, at first.
 
 
