@@ -55,7 +55,9 @@ CHAPTERS = {
     "sweep": ("response", "eigen", "chain"),
 }
 """Folders of Python tests that ask a chapter of the core, besides the C tests."""
-ENVIRONMENT = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+# a fault of the same size in the same second is no newer than what was compiled before
+ENVIRONMENT = os.environ | {"PYTHONDONTWRITEBYTECODE": "1"}
+ENVIRONMENT |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 # --- the core, compiled file by file --------------------------------------------------------------
@@ -127,6 +129,7 @@ class Core:
 
 
 PYTEST = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-n", "0", "-k", UNASKED]
+PYTEST += ["-m", "not slow"]
 
 
 def environment_of(work, **more):

@@ -42,6 +42,7 @@ PI = Number("3.141592653589793238462643383279502884197")
 FINE = 32 * float(np.finfo(Number).eps)  # How far wide numbers are moved to see what that does.
 COARSE = 2 * float(np.finfo(float).eps)  # How far those that are known as doubles alone are.
 SLIGHT = float(np.finfo(float).eps)  # How far doubles are moved so that all rounds otherwise.
+LINEAR = 1 / 8  # What moves an answer by less of itself moves it in proportion.
 RUNS = 16  # Answers are found again so many times, of doubles that are a little off.
 SEEDS = (1, 2)  # Numbers are moved so many times,
 SURE = 8.0  # and what that does is taken so many times.

@@ -16,7 +16,7 @@ from ..base.array import Index, Real
 from ..base.computed import Late, computed
 from ..base.errors import SceneError, SolveError
 from ..base.unit import FAMILY
-from ..chain.wide import RUNS, apart
+from ..chain.wide import LINEAR, RUNS, apart
 from ..eigen.eigen import check_asked, no_mesh
 from ..eigen.modes import Modes, OnCatenary, UndampedMesh, UndampedVectors
 from ..eigen.spectrum import error_in_hertz
@@ -147,9 +147,8 @@ class SpaceShapes:
             except SolveError:  # of parts that end at a resonance
                 return self.error
         found = apart(self.eigenvalue, np.stack(every))
-        # motions that nothing strains are told to be 0
-        small = (found < self.error) & (self.eigenvalue != 0)
-        return np.where(small, found, self.error)
+        told = found <= np.minimum(self.error, LINEAR * np.abs(self.eigenvalue))
+        return np.where(told, found, self.error)
 
     def again(self, nearer: float) -> Real:
         """Return the eigenvalues found once more, from closer by."""

@@ -18,7 +18,7 @@ from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES, WIRE
 from ..chain.place import moved_end
 from ..chain.port import Point, is_force, moving
-from ..chain.wide import RUNS, SLIGHT, apart
+from ..chain.wide import LINEAR, RUNS, SLIGHT, apart
 from ..response.bands import bands, is_many
 from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ..response.question import OnResonance
@@ -182,6 +182,7 @@ class Request:
     node: tuple[Index, Index]  # of drives and of responses
     point: tuple[tuple[Point, ...], tuple[Point, ...]]
     factors_at: Callable[[Real], Factors] | None  # other frequencies; None: these are on no line
+    kept: Index  # nodes, wherever it is cut besides
 
     @classmethod
     def of(
@@ -212,18 +213,24 @@ class Request:
             (node[:both], node[both:]),
             points,
             partial(factors_at, decay=np.ravel(decay)[0]) if same else None,
+            np.arange(len(cut.length) + 1),
         )
 
     def receptance(self) -> Complex:
         """Return motion and internal force per unit force or motion, (drives, responses, f)."""
-        value = np.zeros(self._shape, dtype=np.complex128)
+        return self._answered()[0]
+
+    def _answered(self) -> tuple[Complex, Real]:
+        """Return also how large motion is at the nodes that are kept, scaled, (drives, f)."""
+        value, size = np.zeros(self._shape, dtype=np.complex128), np.zeros(self._shape[::2])
         for side, lines, system in self._systems():
             one, ports = self._solved(system, side, lines, 0), self._ports(system, side, 1)
             seen = np.einsum("lrc,lrcd->drl", ports.motion, one.u[:, ports.node])
             if ports.force.any():
                 seen += np.einsum("lrc,lrcd->drl", ports.force, one.f[:, ports.part])
             value[side.at(lines)] = seen
-        return value
+            size[side.pairs[0], lines] = np.abs(one.u[:, system.node[self.kept]]).max(axis=(1, 2)).T
+        return value, size
 
     def rounding(self) -> Real:
         """Bound what rounding does to it: |x|^T |dA| |y| of motion by drives and responses."""
@@ -241,15 +248,25 @@ class Request:
 
     def error(self, value: Complex) -> Real:
         """Bound what rounding did to a receptance by those of numbers that are a little off."""
-        limit, work = self.rounding(), len(self.frequency) * len(self.rope.length)
-        if work > MOST_WORK:
-            return limit
+        if len(self.frequency) * len(self.rope.length) > MOST_WORK:
+            return self.rounding()
         try:
-            every = [self.nudged(np.random.default_rng(seed)).receptance() for seed in range(RUNS)]
-        except SolveError:  # as close to a resonance as numbers are known
-            return limit
-        found = apart(value, np.stack(every))
-        return np.where(found < limit, found, limit)
+            runs = [self.nudged(np.random.default_rng(seed))._answered() for seed in range(RUNS)]
+        except SolveError:  # some line is as close to a resonance as numbers are known
+            if len(self.frequency) == 1:
+                return np.full(self._shape, np.inf)
+            halves = np.array_split(np.arange(len(self.frequency)), 2)
+            return np.concatenate([self.at(k).error(value[..., k]) for k in halves], axis=2)
+        every, size = (np.stack(one) for one in zip(*runs))
+        error = np.minimum(apart(value, every), self.rounding())
+        # where no digit of a field is left the truth may lie beyond all that others are
+        lost = np.ptp(size, axis=0) > LINEAR * size.min(axis=0)
+        return np.where(lost[:, None], np.inf, error)
+
+    def at(self, lines: Index) -> Request:
+        """Return the question of some of the lines."""
+        factors = Factors(*(one[lines] for one in self.factors))
+        return replace(self, factors=factors, frequency=self.frequency[lines])
 
     def nudged(self, random: np.random.Generator) -> Request:
         """Return the question of a rope and of factors that are a little off."""
@@ -265,6 +282,7 @@ class Request:
             rope=rope,
             factors=moved(self.factors),
             node=(at[self.node[0]], at[self.node[1]]),
+            kept=at,
             factors_at=asked and (lambda frequency: moved(asked(frequency))),
         )
 

@@ -13,7 +13,7 @@ from ..base.array import Flags, Index, Real
 from ..base.computed import Late
 from ..base.errors import SolveError
 from ..chain.port import Point
-from ..chain.wide import RUNS, apart
+from ..chain.wide import LINEAR, RUNS, apart
 from ..eigen.vectors import within
 from ..response.critical import exceeds
 from ..response.deflection import POINTS, Deflection, summed_loads
@@ -74,8 +74,11 @@ def solve_static(
             for one in parts:
                 every[0, k][:, one.own] = one.displacement[node]
                 every[1, k][:, one.own] = one.force[node]
-        found = zip((displacement, force), every)
-        return [(apart(v, e) + NOTHING * np.abs(v).max())[:, own] for v, e in found]
+        found = [apart(v, e)[:, own] for v, e in zip((displacement, force), every)]
+        size = np.abs(displacement).max(), np.abs(force).max()
+        if found[0].max() > LINEAR * size[0]:
+            return np.full((2, *shape), np.inf)
+        return [one + NOTHING * most for one, most in zip(found, size)]
 
     return Deflection(
         coordinates=rope.coordinates,

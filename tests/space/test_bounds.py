@@ -136,6 +136,20 @@ def test_a_corner_passes_on_the_little_that_it_leaves(aside):
     assert (np.abs(found.displacement - exact) <= found.rounding_error).all()
 
 
+def test_a_line_within_what_rounding_does_to_a_mode_is_refused_or_infinite():
+    rope = rd.Rope(rd.Axis.arc(2.0, 4.0), 0.5, bending_stiffness=2.0, torsional_stiffness=1.0)
+    model = rd.Scene(rope, planes="both").compile()
+    modes = model.modes(6)
+    for f, off in zip(modes.frequency, modes.rounding_error):
+        drive = ("z" if modes.plane[modes.frequency == f] == "z" else "y", 2.3)
+        assert 0 < model.frf([f + 20 * off], drive=drive).rounding_error < 0.1
+        try:
+            frf = model.frf([0.5 * f, f + 5 * off], drive=drive)
+        except rd.SolveError:
+            continue
+        assert np.isfinite(frf.rounding_limit).tolist() == [[True, False]]
+
+
 def test_bounds_of_ropes_under_torque_cover_what_rounding_does():
     found = some(partial(mode_ratios, scene=random_axes.twisted), 60, 3)
     assert found.max() < 1
