@@ -7,6 +7,7 @@ H^-1 is linear there, and its zeros are the eigenvalues.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
@@ -21,11 +22,12 @@ from ..chain.port import cut, stops
 from ..chain.wide import FINE, SEEDS, SPARE, SURE, Number, as_real, moved, narrow, rescaled, wide_of
 from ..chain.wide_parts import inverse
 from ..chain.witness import Loads, respond
-from .spectrum import error_in_hertz, in_hertz
+from .spectrum import error_in_hertz, in_hertz, spectrum
 
 Array = Any
 
 EPS = float(np.finfo(float).eps)
+STEP = 2.0**-40  # Of a tension that nearly vanishes somewhere: what its rounding does.
 HERTZ = 1.25 * EPS  # Rounding of sqrt(lambda)/2 pi: half of eps each, and 0.18 eps of 2 pi itself.
 BESIDE = 2.0**-34  # So far beside an eigenvalue H is looked at, of its size,
 WIDER = 64.0  # or so many times as far as it may be wrong.
@@ -228,11 +230,26 @@ def undamped_factors(value: Array) -> Array:
     return np.stack([one, one, one, -value, none])
 
 
+def _of_steep(model: Compiled, component: tuple[str, ...], number: int) -> Real:
+    """Return what rounding of a tension that nearly vanishes somewhere does to eigenvalues."""
+    chain, moved = model.chain, np.zeros(number)
+    before, _ = spectrum(model, component, number)
+    # both leave the ends with more
+    for name, step in (("tension", STEP), ("rise", -STEP)):
+        off = chain._replace(**{name: getattr(chain, name) * (1 + step)})
+        after, _ = spectrum(dataclasses.replace(model, chain=off), component, number)
+        moved += np.abs(after - before)
+    return np.asarray(2 * EPS / STEP * moved)
+
+
 def rounding_of(model: Compiled, which: Index, eigenvalue: Real, bound: Real) -> Real:
     """Return errors of undamped frequencies of components [Hz], by the bound where that is all."""
     error = bound.copy()
     for k, component in enumerate(model.components):
         mine = which == k
+        if mine.any() and wide_of(model) is None:
+            error[mine] += _of_steep(model, component, int(mine.sum()))
+            continue
         told = measured(
             model, component, SoughtRoots(eigenvalue[mine], bound[mine], undamped_factors)
         )

@@ -218,7 +218,7 @@ def assemble(
     for wire, foot in zip(rope.carried, feet):
         at = node[wire.node]
         N[:, at] += foot.stiffness * (z[:, :, None] * z[:, None, :])
-        doubt[:, at] += (foot.doubt * (z[:, :, None] * z[:, None, :])).max((1, 2))
+        doubt[:, at] += SAFE * (foot.doubt * (z[:, :, None] * z[:, None, :])).max((1, 2))
     absent = np.broadcast_to(blocks.absent[which], z.shape)
     held = np.tile(absent[:, None], (1, node[-1] + 1, 1))
     held[:, node] |= blocks.held[which]

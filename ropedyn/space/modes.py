@@ -147,7 +147,7 @@ class SpaceShapes:
             except SolveError:  # of parts that end at a resonance
                 return self.error
         found = apart(self.eigenvalue, np.stack(every))
-        told = found <= np.minimum(self.error, LINEAR * np.abs(self.eigenvalue))
+        told = found <= LINEAR * np.abs(self.eigenvalue)
         return np.where(told, found, self.error)
 
     def again(self, nearer: float) -> Real:

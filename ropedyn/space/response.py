@@ -128,7 +128,7 @@ def solve_frf(
         ),
         rounding=Late(rounding),
         rounding_bound=Late(bounded),
-        mesh=mesh,
+        mesh=Late(mesh),
         solve_rates=_refuse_rates,
         decay=decay,
     )
@@ -258,7 +258,7 @@ class Request:
             halves = np.array_split(np.arange(len(self.frequency)), 2)
             return np.concatenate([self.at(k).error(value[..., k]) for k in halves], axis=2)
         every, size = (np.stack(one) for one in zip(*runs))
-        error = np.minimum(apart(value, every), self.rounding())
+        error = apart(value, every)
         # where no digit of a field is left the truth may lie beyond all that others are
         lost = np.ptp(size, axis=0) > LINEAR * size.min(axis=0)
         return np.where(lost[:, None], np.inf, error)

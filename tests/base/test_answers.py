@@ -44,6 +44,10 @@ SCENE = rd.Scene(
     parts=[rd.PointMass(0.4, 0.02)],
 )
 MODEL = SCENE.compile(elements=10, element="rigid")
+ARC = rd.Scene(
+    rd.Rope(rd.Axis.arc(2.0, 0.6), 0.4, bending_stiffness=1.5, torsional_stiffness=1.0),
+    planes="both",
+).compile()
 GRID = np.linspace(5.0, 150.0, 300)
 FREE = SCENE.replace(ends=("free", "free")).compile(elements=10, element="rigid")
 BUCKLED = SCENE.replace(tension=-300.0).compile(elements=10, element="rigid")
@@ -57,6 +61,7 @@ ANSWERS = {
     "growing modes": BUCKLED.modes(2),
     "frf": MODEL.frf(GRID, drive=("z", 0.31), response=[("z", 0.31), ("alpha", 0.9)]),
     "one frequency": MODEL.frf(33.0, drive=("beta", 1.2)),
+    "frf on an axis": ARC.frf([5.0, 50.0], drive=("z", 0.31)),
     "mobility": MODEL.frf(GRID, drive=("z", 0.31), quantity="mobility"),
     "several drives": MODEL.frf(
         GRID, drive=[("z", 0.31), ("alpha", 0.4)], response=[("z", 0.5), ("z", 0.7), ("beta", 0.7)]
