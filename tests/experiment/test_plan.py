@@ -135,6 +135,13 @@ def test_modes_are_those_that_drive_and_response_can_see():
     assert (laid.drive[0], laid.response[0][0]) == ("z", "alpha")
 
 
+def test_motion_across_is_planned_where_nothing_is_said():
+    rope = rd.Rope(1.0, 0.1, axial_stiffness=1e5)
+    scene = rd.Scene(rope, tension=1000.0, damping=rd.ModalDamping(0.01))
+    assert scene.coordinates[0] == "x"
+    assert rd.plan_measurement(scene, 2).drive[0] == "z"
+
+
 def test_rigid_motion_has_no_peak():
     free = STRING.replace(ends=("free", "free"))
     plan = rd.plan_measurement(free, 2)

@@ -211,6 +211,19 @@ def test_phases_keep_energy(damping, tension):
     assert np.ptp(kept(history)) < 1e-9 * history.energy["input"].max()
 
 
+@pytest.mark.parametrize("mode", [0, 2])
+def test_a_force_at_a_frequency_without_damping_is_followed(mode):
+    model = rope(rd.Stop(0.5, 1e4, gap=1.0), damping=None).compile(elements=8, element="rigid")
+    free = model.scene.replace(parts=()).compile(elements=8, element="rigid")
+    force = rd.Sine(1.0, float(free.modes(3).frequency[mode]))
+    time, drive = np.linspace(0.0, 0.1, 101), ("z", 0.2)
+    asked = {"drive": drive, "force": force, "response": ("z", 0.5)}
+    ours = model.transient(time, method="events", **asked)
+    exact = free.transient(time, method="modal", **asked).value
+    # t e^(i omega t) of that mode, and no other; 1.1e-14
+    assert np.abs(ours.value - exact).max() < 1e-12 * np.abs(exact).max()
+
+
 # --- what is asked ------------------------------------------------------------------------------
 
 
