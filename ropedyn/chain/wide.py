@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -48,6 +49,9 @@ SEEDS = (1, 2)  # Numbers are moved so many times,
 SURE = 8.0  # and what that does is taken so many times.
 SPARE = 1 / 64  # A wide value's own error is less than this part of what is measured.
 STEEP = 1024.0  # Tension does not grow by more than so many times what it is anywhere.
+FALLS = 16.0  # Where it does by so many times a rounding of its mean is more at one end.
+OF_TENSION = 4.0  # Roundings of T - a x, in units of eps of the largest.
+STEP = 2.0**-40  # Of one that does: what its rounding does is told by so much of it.
 SAME = 1e-12  # Doubles that differ by no more are roundings of the same numbers.
 
 
@@ -115,13 +119,34 @@ def rescaled(random: np.random.Generator, width: int) -> Array:
 
 def wide_of(model: Compiled) -> Wide | None:
     """Return the chain of a model in wide numbers; None where its tension vanishes somewhere."""
-    chain = model.chain
-    if chain.rise is not None:
-        least = chain.tension - np.abs(chain.rise) / 2
-        if (least * STEEP <= np.abs(chain.rise)).any():
-            return None
+    if _is_steep(model.chain, STEEP):
+        return None
     own = _compiled(model)
     return own if own is not None else _given(model)
+
+
+def _is_steep(chain: Chain, times: float) -> bool:
+    """Whether the tension of a span grows by so many times what it is somewhere."""
+    if chain.rise is None:
+        return False
+    least = chain.tension - np.abs(chain.rise) / 2
+    return bool((least * times <= np.abs(chain.rise)).any())
+
+
+def steep(model: Compiled) -> list[Compiled]:
+    """Return the model with a little more tension everywhere if that falls much, none else."""
+    chain = model.chain
+    if not _is_steep(chain, FALLS):
+        return []
+    assert chain.rise is not None
+    # each element's is a difference of what is as large as the largest
+    more = STEP * float((np.abs(chain.tension) + np.abs(chain.rise) / 2).max())
+    return [replace(model, chain=chain._replace(tension=chain.tension + more))]
+
+
+def of_steep(value: Array, others: list[Array]) -> Any:
+    """Return what rounding of such a tension does, by the answer of that model."""
+    return OF_TENSION * SLIGHT / STEP * sum(np.abs(other - value) for other in others)
 
 
 def _given(model: Compiled) -> Wide:

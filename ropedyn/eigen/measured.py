@@ -7,7 +7,6 @@ H^-1 is linear there, and its zeros are the eigenvalues.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
@@ -19,7 +18,20 @@ from ..base.array import Index, Real
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT, Compiled
 from ..chain.port import cut, stops
-from ..chain.wide import FINE, SEEDS, SPARE, SURE, Number, as_real, moved, narrow, rescaled, wide_of
+from ..chain.wide import (
+    FINE,
+    SEEDS,
+    SPARE,
+    SURE,
+    Number,
+    as_real,
+    moved,
+    narrow,
+    of_steep,
+    rescaled,
+    steep,
+    wide_of,
+)
 from ..chain.wide_parts import inverse
 from ..chain.witness import Loads, respond
 from .spectrum import error_in_hertz, in_hertz, spectrum
@@ -27,7 +39,6 @@ from .spectrum import error_in_hertz, in_hertz, spectrum
 Array = Any
 
 EPS = float(np.finfo(float).eps)
-STEP = 2.0**-40  # Of a tension that nearly vanishes somewhere: what its rounding does.
 HERTZ = 1.25 * EPS  # Rounding of sqrt(lambda)/2 pi: half of eps each, and 0.18 eps of 2 pi itself.
 BESIDE = 2.0**-34  # So far beside an eigenvalue H is looked at, of its size,
 WIDER = 64.0  # or so many times as far as it may be wrong.
@@ -230,28 +241,16 @@ def undamped_factors(value: Array) -> Array:
     return np.stack([one, one, one, -value, none])
 
 
-def _of_steep(model: Compiled, component: tuple[str, ...], number: int) -> Real:
-    """Return what rounding of a tension that nearly vanishes somewhere does to eigenvalues."""
-    chain, moved = model.chain, np.zeros(number)
-    before, _ = spectrum(model, component, number)
-    # both leave the ends with more
-    for name, step in (("tension", STEP), ("rise", -STEP)):
-        off = chain._replace(**{name: getattr(chain, name) * (1 + step)})
-        after, _ = spectrum(dataclasses.replace(model, chain=off), component, number)
-        moved += np.abs(after - before)
-    return np.asarray(2 * EPS / STEP * moved)
-
-
 def rounding_of(model: Compiled, which: Index, eigenvalue: Real, bound: Real) -> Real:
     """Return errors of undamped frequencies of components [Hz], by the bound where that is all."""
     error = bound.copy()
     for k, component in enumerate(model.components):
         mine = which == k
-        if mine.any() and wide_of(model) is None:
-            error[mine] += _of_steep(model, component, int(mine.sum()))
-            continue
-        told = measured(
-            model, component, SoughtRoots(eigenvalue[mine], bound[mine], undamped_factors)
-        )
-        error[mine] = np.where(np.isnan(told), bound[mine], told)
+        sought = SoughtRoots(eigenvalue[mine], bound[mine], undamped_factors)
+        told, limit = measured(model, component, sought), bound[mine]
+        if np.isnan(told).any() and (moved := steep(model)):
+            models = (model, *moved)
+            value, *others = (spectrum(one, component, int(mine.sum()))[0] for one in models)
+            limit = limit + of_steep(value, others)
+        error[mine] = np.where(np.isnan(told), limit, told)
     return error_in_hertz(eigenvalue, error) + HERTZ * np.abs(in_hertz(eigenvalue))

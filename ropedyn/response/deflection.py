@@ -23,6 +23,7 @@ from ..chain.compiled import EXACT, Compiled
 from ..chain.place import refuse_slack
 from ..chain.port import Point, Ports, cut, ports, stops
 from ..chain.reaction import left_ends
+from ..chain.wide import of_steep, steep
 from ..scene.end import end_of
 from .critical import critical_loads, exceeds, refuse_critical
 from .measured import measured_at_rest, off_by, surely
@@ -135,6 +136,13 @@ def solve_static(
         for of in (_motion_error, solver_of.force_error)
     ]
     measured = cache(partial(_measured, model, loads, x, (displacement, force)))
+
+    @cache
+    def lost() -> list[Any]:
+        others = [_deflected(one, loads, x, solver_of)[:2] for one in steep(model)]
+        answers = enumerate((displacement, force))
+        return [of_steep(value, [one[k] for one in others]) for k, value in answers]
+
     return Deflection(
         coordinates=model.coordinates,
         x=x,
@@ -142,8 +150,8 @@ def solve_static(
         force=force,
         load=tuple(loads.items()),
         critical_loads=critical_loads(model, loads) if unstable else 0,
-        rounding_error=Late(lambda: measured()[0].over(bounds[0](), solver)),
-        force_rounding_error=Late(lambda: measured()[1].over(bounds[1](), solver)),
+        rounding_error=Late(lambda: measured()[0].over(bounds[0]() + lost()[0], solver)),
+        force_rounding_error=Late(lambda: measured()[1].over(bounds[1]() + lost()[1], solver)),
         rounding_bound=Late(bounds[0]),
         mesh_error=Late(partial(_mesh, model, loads, displacement)),
         cost=Cost(solver, len(model.x) - 1, unknowns, *work),

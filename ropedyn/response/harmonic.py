@@ -21,6 +21,7 @@ from ..chain.compile import compile_scene
 from ..chain.compiled import Compiled
 from ..chain.place import observed, points
 from ..chain.port import Point, moving
+from ..chain.wide import of_steep, steep
 from ..scene import damping
 from ..scene.scene import Scene
 from .at_node import answers_at_nodes
@@ -171,7 +172,10 @@ class Receptance(NamedTuple):
             question, found = answered.question, None
             if answered.parts is None:
                 found = measured(question, self.value[block])
-            limit = bound()
+            solve = answers_at_nodes(moves_ends(SOLVERS[solver]))
+            models = steep(question.model) if answered.parts is None else []
+            others = [solve(replace(question, model=one))[0] for one in models]
+            limit = bound() + of_steep(self.value[block], others)
             if found is None:
                 error[block], certain[block] = limit, False
                 continue
