@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -133,20 +134,16 @@ def _is_steep(chain: Chain, times: float) -> bool:
     return bool((least * times <= np.abs(chain.rise)).any())
 
 
-def steep(model: Compiled) -> list[Compiled]:
-    """Return the model with a little more tension everywhere if that falls much, none else."""
+def of_steep(model: Compiled, value: Array, answer: Callable[[Compiled], Array]) -> Array:
+    """Return what rounding of a tension that falls much does to an answer, 0 of any other."""
     chain = model.chain
     if not _is_steep(chain, FALLS):
-        return []
+        return np.zeros(np.shape(value))
     assert chain.rise is not None
     # each element's is a difference of what is as large as the largest
     more = STEP * float((np.abs(chain.tension) + np.abs(chain.rise) / 2).max())
-    return [replace(model, chain=chain._replace(tension=chain.tension + more))]
-
-
-def of_steep(value: Array, others: list[Array]) -> Any:
-    """Return what rounding of such a tension does, by the answer of that model."""
-    return OF_TENSION * SLIGHT / STEP * sum(np.abs(other - value) for other in others)
+    moved = replace(model, chain=chain._replace(tension=chain.tension + more))
+    return np.asarray(OF_TENSION * SLIGHT / STEP * np.abs(answer(moved) - value))
 
 
 def _given(model: Compiled) -> Wide:

@@ -29,7 +29,6 @@ from ..chain.wide import (
     narrow,
     of_steep,
     rescaled,
-    steep,
     wide_of,
 )
 from ..chain.wide_parts import inverse
@@ -241,6 +240,11 @@ def undamped_factors(value: Array) -> Array:
     return np.stack([one, one, one, -value, none])
 
 
+def _lowest(model: Compiled, component: tuple[str, ...], number: int) -> Real:
+    """Return so many eigenvalues of a component."""
+    return spectrum(model, component, number)[0]
+
+
 def rounding_of(model: Compiled, which: Index, eigenvalue: Real, bound: Real) -> Real:
     """Return errors of undamped frequencies of components [Hz], by the bound where that is all."""
     error = bound.copy()
@@ -248,9 +252,8 @@ def rounding_of(model: Compiled, which: Index, eigenvalue: Real, bound: Real) ->
         mine = which == k
         sought = SoughtRoots(eigenvalue[mine], bound[mine], undamped_factors)
         told, limit = measured(model, component, sought), bound[mine]
-        if np.isnan(told).any() and (moved := steep(model)):
-            models = (model, *moved)
-            value, *others = (spectrum(one, component, int(mine.sum()))[0] for one in models)
-            limit = limit + of_steep(value, others)
+        if np.isnan(told).any():
+            lowest = partial(_lowest, component=component, number=int(mine.sum()))
+            limit = limit + of_steep(model, eigenvalue[mine], lowest)
         error[mine] = np.where(np.isnan(told), limit, told)
     return error_in_hertz(eigenvalue, error) + HERTZ * np.abs(in_hertz(eigenvalue))

@@ -23,7 +23,7 @@ from ..chain.compiled import EXACT, Compiled
 from ..chain.place import refuse_slack
 from ..chain.port import Point, Ports, cut, ports, stops
 from ..chain.reaction import left_ends
-from ..chain.wide import of_steep, steep
+from ..chain.wide import of_steep
 from ..scene.end import end_of
 from .critical import critical_loads, exceeds, refuse_critical
 from .measured import measured_at_rest, off_by, surely
@@ -138,10 +138,11 @@ def solve_static(
     measured = cache(partial(_measured, model, loads, x, (displacement, force)))
 
     @cache
-    def lost() -> list[Any]:
-        others = [_deflected(one, loads, x, solver_of)[:2] for one in steep(model)]
-        answers = enumerate((displacement, force))
-        return [of_steep(value, [one[k] for one in others]) for k, value in answers]
+    def lost() -> Real:
+        answer = np.stack((displacement, force))
+        return of_steep(
+            model, answer, lambda one: np.stack(_deflected(one, loads, x, solver_of)[:2])
+        )
 
     return Deflection(
         coordinates=model.coordinates,

@@ -21,7 +21,7 @@ from ..chain.compile import compile_scene
 from ..chain.compiled import Compiled
 from ..chain.place import observed, points
 from ..chain.port import Point, moving
-from ..chain.wide import of_steep, steep
+from ..chain.wide import of_steep
 from ..scene import damping
 from ..scene.scene import Scene
 from .at_node import answers_at_nodes
@@ -48,7 +48,7 @@ def solve_harmonic(
     tight: bool = True,
 ) -> FRF:
     """Compute the frequency response; see `Model.frf`. Its rounding is bounded unless `tight`."""
-    solve = answers_at_nodes(moves_ends(SOLVERS[check.one_of(solver, "solver", SOLVERS)]))
+    solve = _solver(check.one_of(solver, "solver", SOLVERS))
     if model.element == "continuous" and solver != "sweep":
         raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
     workers = workers_of(threads)
@@ -169,18 +169,26 @@ class Receptance(NamedTuple):
         """Measure what rounding did, as value, or bound it; and where it was measured."""
         error, certain = np.zeros(self.value.shape), np.ones(self.value.shape, dtype=np.bool_)
         for (block, bound), answered in zip(self.bounds, self.answered):
-            question, found = answered.question, None
+            question, found, limit = answered.question, None, bound()
             if answered.parts is None:
                 found = measured(question, self.value[block])
-            solve = answers_at_nodes(moves_ends(SOLVERS[solver]))
-            models = steep(question.model) if answered.parts is None else []
-            others = [solve(replace(question, model=one))[0] for one in models]
-            limit = bound() + of_steep(self.value[block], others)
+                limit = limit + _lost(question, self.value[block], solver)
             if found is None:
                 error[block], certain[block] = limit, False
                 continue
             error[block], certain[block] = surely(found.error, found.noise, limit, solver=solver)
         return error, certain
+
+
+def _solver(name: str) -> Solver:
+    """Return a solver that takes forces at nodes of modes and ends that move too."""
+    return answers_at_nodes(moves_ends(SOLVERS[name]))
+
+
+def _lost(question: Question, value: Complex, solver: str) -> Real:
+    """Return what rounding of a tension that falls much does to a response."""
+    solve = _solver(solver)
+    return of_steep(question.model, value, lambda one: solve(replace(question, model=one))[0])
 
 
 def by_components(whole: Question, answer: Callable[[Question], Summed]) -> Receptance:

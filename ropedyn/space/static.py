@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base import check
 from ..base.answer import Cost
-from ..base.array import Flags, Index, Real
+from ..base.array import Index, Real
 from ..base.computed import Late
 from ..base.errors import SolveError
 from ..chain.port import Point
@@ -46,45 +46,22 @@ def solve_static(
     along = {(coordinate, at * rope.longer): load for (coordinate, at), load in loads.items()}
     x = np.concatenate([within(rope.x, points or POINTS), [at for _, at in along]])
     cut, _ = rope.cut(x, near)
-    x, shape = cut.x, (len(cut.x), int(own.sum()))
-    solved = _under(cut, along)
-    displacement, force = np.zeros((2, len(x), 6))
-    for one in solved:
-        displacement[:, one.own], force[:, one.own] = one.displacement, one.force
+    x, solved = cut.x, _under(cut, along)
+    answer = _at_nodes(solved, np.arange(len(x)))
 
     def mesh() -> Real:
         finer = finer_rope(scene, rope)
         if finer is None:
-            return np.zeros(shape)
+            return np.zeros((len(x), int(own.sum())))
         other, node = finer.cut(x, near)
-        there = np.zeros_like(displacement)
-        for one in _under(other, along):
-            there[:, one.own] = one.displacement[node]
-        return np.abs(displacement - there)[:, own]
+        return np.abs(answer - _at_nodes(_under(other, along), node))[0][:, own]
 
-    @cache
-    def rounding() -> Any:
-        every = np.zeros((2, RUNS, *displacement.shape))
-        for k in range(RUNS):
-            moved, node = cut.nudged(np.random.default_rng(k))
-            try:
-                parts = _under(moved, along)
-            except SolveError:  # as close to a critical load as numbers are known
-                return np.full((2, *shape), np.inf)
-            for one in parts:
-                every[0, k][:, one.own] = one.displacement[node]
-                every[1, k][:, one.own] = one.force[node]
-        found = [apart(v, e)[:, own] for v, e in zip((displacement, force), every)]
-        size = np.abs(displacement).max(), np.abs(force).max()
-        if found[0].max() > LINEAR * size[0]:
-            return np.full((2, *shape), np.inf)
-        return [one + NOTHING * most for one, most in zip(found, size)]
-
+    rounding = cache(lambda: _rounding(cut, along, answer)[..., own])
     return Deflection(
         coordinates=rope.coordinates,
         x=x / rope.longer,
-        displacement=displacement[:, own],
-        force=force[:, own],
+        displacement=answer[0][:, own],
+        force=answer[1][:, own],
         load=tuple(loads.items()),
         critical_loads=len(growing(rope)) if unstable else 0,
         cost=Cost(
@@ -108,11 +85,6 @@ class LoadedPart(NamedTuple):
     def displacement(self) -> Real:
         """Of the nodes, shape (nodes, width)."""
         return np.asarray(self.field.u[0, self.system.node, :, 0] * self.system.z[0])
-
-    @property
-    def held(self) -> Flags:
-        """Coordinates of the nodes that cannot move, shape (nodes, width)."""
-        return np.asarray(self.system.held[0, self.system.node])
 
     @property
     def force(self) -> Real:
@@ -143,6 +115,29 @@ def _under(rope: SpaceRope, loads: dict[Point, float]) -> list[LoadedPart]:
         if right.any():
             found.append(LoadedPart(own, system, _solved(system, right)))
     return found
+
+
+def _at_nodes(parts: list[LoadedPart], node: Index) -> Real:
+    """Return displacement and force at nodes, (2, nodes, 6)."""
+    found = np.zeros((2, len(node), 6))
+    for one in parts:
+        found[0][:, one.own], found[1][:, one.own] = one.displacement[node], one.force[node]
+    return found
+
+
+def _rounding(rope: SpaceRope, loads: dict[Point, float], answer: Real) -> Real:
+    """Bound what rounding did to displacement and force by those of numbers a little off."""
+    every = []
+    for seed in range(RUNS):
+        moved, node = rope.nudged(np.random.default_rng(seed))
+        try:
+            every.append(_at_nodes(_under(moved, loads), node))
+        except SolveError:  # as close to a critical load as numbers are known
+            return np.full(answer.shape, np.inf)
+    error, size = apart(answer, np.stack(every)), np.abs(answer).max(axis=(1, 2))
+    if error[0].max() > LINEAR * size[0]:
+        return np.full(answer.shape, np.inf)
+    return error + NOTHING * size[:, None, None]
 
 
 def _solved(system: Assembly, right: Real) -> LoadedFields:

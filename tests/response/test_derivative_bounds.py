@@ -90,7 +90,7 @@ def bounds_over_errors(seed):
 def test_derivatives_of_damped_responses_are_right_to_their_bounds(seeds):
     ratio = np.concatenate([bounds_over_errors(seed) for seed in seeds])
     assert ratio.min() >= 1  # 1.6 of 100 scenes
-    assert np.median(ratio) <= 12  # 9.6
+    assert np.median(ratio) <= 10  # 9.6
 
 
 def test_derivatives_of_undamped_responses_are_real():
