@@ -1,5 +1,7 @@
 """Linear motion by the line: random scenes against exponentials of matrices, and refusals."""
 
+from itertools import pairwise
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -7,6 +9,9 @@ from dense_motion import Dense
 from linear_case import Case, Exact, random_case
 
 import ropedyn as rd
+from ropedyn.motion.line.force_transform import transform
+from ropedyn.motion.line.grid import Grid
+from ropedyn.scene.force import Samples
 
 LENGTH, DENSITY, TENSION = 1.3, 0.1, 100.0
 ROPE = rd.Rope(LENGTH, DENSITY, bending_stiffness=0.5)
@@ -154,6 +159,51 @@ def test_times_that_are_not_even_are_those_of_even_ones(force):
     # straight lines between even samples are not those between others
     beside = 2e-3 * np.abs(every.value).max() * isinstance(force, np.ndarray)
     assert (apart <= some.error[:, both] + every.error[:, np.isin(TIME, time)] + beside).all()
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-9, 0.0], ids=["near", "close", "neighbours"])
+def test_transform_of_samples_keeps_its_digits_where_times_are_close(gap):
+    """Corners over the square of the rate had none left of a jump between neighbouring times."""
+    drawn = np.random.default_rng(4)
+    time = np.sort(drawn.uniform(0.0, 0.3, 60))
+    time = np.insert(time, 31, max(time[30] + gap, np.nextafter(time[30], 1.0)))
+    sample = drawn.standard_normal(61)
+    grid = Grid.over(time, 1.25, 1e-9, 0.0, omega=0.0, least=2)
+    value = transform(Samples(time, sample), grid)
+    with mp.workdps(40):
+        since = [*(mp.mpf(t) - mp.mpf(time[0]) for t in time), mp.mpf(grid.period)]
+        ends = list(pairwise(zip(since, [*map(mp.mpf, sample), mp.mpf(0)])))
+        slope = [(after - before) / (end - begin) for (begin, before), (end, after) in ends]
+        for k in [0, 1, 5, 20, 21, 22, 100, len(grid.s) - 1]:
+            s = mp.mpc(complex(grid.s[k]))
+            exact = sum(
+                (before * mp.exp(-s * begin) - after * mp.exp(-s * end)) / s
+                + rise * (mp.exp(-s * begin) - mp.exp(-s * end)) / s**2
+                for ((begin, before), (end, after)), rise in zip(ends, slope)
+            )
+            most = np.abs(sample).max() / abs(grid.s[k])
+            assert abs(exact - complex(value[k])) < 5e-14 * most  # measured: at most 9e-16
+
+
+@pytest.mark.parametrize(
+    ("method", "quantity", "most"),  # measured: 2e-10, 3e-7, 4e-16, 1.5e-15
+    [
+        ("line", "displacement", 1e-8),
+        ("line", "velocity", 1e-5),
+        ("modal", "displacement", 1e-14),
+        ("modal", "velocity", 1e-13),
+    ],
+)
+def test_jump_between_neighbouring_times_is_a_step(method, quantity, most):
+    model = rd.Scene(ROPE, tension=TENSION).compile(elements=26)
+    time = np.sort([0.0, 0.013, 0.07, 0.1, np.nextafter(0.1, 1.0), 0.17, 0.22, 0.3])
+    asked = {"response": ("z", 0.65), "method": method, "quantity": quantity}
+    drawn = model.transient(time, drive=("z", 0.4), force=1.0 * (time <= 0.1), **asked)
+    steps = [rd.Step(1.0), rd.Step(-1.0, time=0.1)]
+    stepped = model.transient(time, drive=[("z", 0.4)] * 2, force=steps, **asked)
+    apart = np.abs(drawn.value - stepped.value)
+    assert (apart <= drawn.error + stepped.error).all()
+    assert apart.max() < most * np.abs(stepped.value).max()
 
 
 def test_shape_that_is_let_go_is_that_of_its_mode():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ...base.array import Complex, Real
@@ -10,6 +12,9 @@ from ..modal.chirp import chirp_between, follow
 from ..modal.convolution import SinePiece, pieces
 from ..modal.exponentials import ramp
 from .grid import Grid
+
+ORDER = 16  # The highest of rates of one order over the lowest.
+SPREAD = 7  # Terms of a jump spread over 1/omega.
 
 
 def transform(force: Force, grid: Grid) -> Complex:
@@ -86,6 +91,25 @@ def _of_corners(force: Samples, grid: Grid) -> Complex:
     """Transform samples at any times: jumps over s and corners over s^2."""
     time = np.append(force.time - grid.begin, grid.period)
     sample = np.append(force.sample, 0.0)
-    slope = np.diff(sample) / np.diff(time)
-    corner = np.diff(slope, prepend=0.0, append=0.0)
-    return np.asarray(sample[0] / grid.s + grid.exponentials(time, corner) / grid.s**2)
+    total = np.asarray(sample[0] / grid.s)
+    # corners cancel where times are within a turn: rates of one order are told together
+    end = len(grid.s)
+    while end:
+        rates = range(end // ORDER, end)
+        total[rates.start : end] += _of_rises(time, sample, grid, rates)
+        end = rates.start
+    return total
+
+
+def _of_rises(time: Real, sample: Real, grid: Grid, rates: range) -> Complex:
+    """Transform the slope of straight lines over s: those within a turn as jumps spread evenly."""
+    s = grid.s[rates.start : rates.stop]
+    step, rise = np.diff(time), np.diff(sample)
+    short = step * abs(s[-1]) <= 1
+    corner = np.diff(np.where(short, 0.0, rise / step), prepend=0.0, append=0.0)
+    total = grid.exponentials(time, corner, rates) / s**2
+    middle, half, jump = time[:-1][short] + step[short] / 2, step[short] / 2, rise[short]
+    for m in range(SPREAD if short.any() else 0):
+        share = jump * half ** (2 * m) / math.factorial(2 * m + 1)
+        total += grid.exponentials(middle, share, rates) * s ** (2 * m - 1)
+    return np.asarray(total)

@@ -88,15 +88,9 @@ class Grid:
         """The rates, shape (lines + 1,)."""
         return np.asarray(self.a + 2j * math.pi / self.period * np.arange(self.lines + 1))
 
-    @property
-    def _digits(self) -> tuple[Index, Index]:
-        """Numbers of which k is the sum: low ones, and high ones in even steps."""
-        inner = math.isqrt(len(self.s)) + 1
-        return np.arange(inner), np.arange(-(-len(self.s) // inner)) * inner
-
-    def exponentials(self, since: Real, weight: Real) -> Complex:
-        """Return the sum of weight e^(-s t) at each rate, of times (n,) since the first."""
-        low, high = self._digits
+    def exponentials(self, since: Real, weight: Real, rates: range) -> Complex:
+        """Return the sum of weight e^(-s t) at some rates, of times (n,) since the first."""
+        low, high = _digits(rates)
         turn = -2j * math.pi / self.period
         total = np.zeros((len(high), len(low)), dtype=np.complex128)
         most = max(1, MOST // (len(low) + len(high)))
@@ -105,11 +99,11 @@ class Grid:
             size = weight[k : k + most] * np.exp(-self.a * t)
             far = np.exp(turn * np.multiply.outer(high, t)) * size
             total += far @ np.exp(turn * np.multiply.outer(t, low))
-        return total.ravel()[: len(self.s)]
+        return total.ravel()[: len(rates)]
 
     def summed(self, spectrum: Complex, since: Real) -> Real:
         """Return the motion of spectra (r, lines + 1) at times (n,) since the first, (r, n)."""
-        low, high = self._digits
+        low, high = _digits(range(len(self.s)))
         table = np.zeros((len(spectrum), len(high) * len(low)), dtype=np.complex128)
         table[:, : len(self.s)] = spectrum * (2 / self.period)
         table[:, 0] /= 2
@@ -133,3 +127,9 @@ class Grid:
         count = 2 * self.lines
         growth = np.exp(self.a * self.period / count * np.arange(count)) * (count / self.period)
         return np.asarray(growth * irfft(spectrum, count, axis=-1))
+
+
+def _digits(numbers: range) -> tuple[Index, Index]:
+    """Return numbers of which these are the sums: low ones, and high ones in even steps."""
+    inner = math.isqrt(len(numbers)) + 1
+    return np.arange(inner), numbers.start + np.arange(-(-len(numbers) // inner)) * inner
