@@ -48,3 +48,12 @@ def test_every_page_of_the_site_stands_in_its_index():
     index = (ROOT / "docs/index.md").read_text(encoding="utf-8")
     pages = {path.stem for path in (ROOT / "docs").glob("*.md")} - {"index"}
     assert pages - set(re.findall(r"^(\w+)$", index, re.MULTILINE)) == set()
+
+
+def test_every_file_that_a_page_names_is_there():
+    """Paths from the top of the repository, in pages of the site and beside it."""
+    pages = [*(ROOT / "docs").rglob("*.md"), *(ROOT / n for n in ("README.md", "CONTRIBUTING.md"))]
+    path = re.compile(r"\b(?:csrc|ropedyn|tests|notebooks)/[\w/]+\.(?:py|c|h|ipynb|txt|csv)\b")
+    named = {one for page in pages for one in path.findall(page.read_text(encoding="utf-8"))}
+    assert len(named) > 50
+    assert [one for one in sorted(named) if not (ROOT / one).is_file()] == []
