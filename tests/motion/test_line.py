@@ -161,6 +161,20 @@ def test_times_that_are_not_even_are_those_of_even_ones(force):
     assert (apart <= some.error[:, both] + every.error[:, np.isin(TIME, time)] + beside).all()
 
 
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_steps_that_are_nearly_equal_do_not_add_up_unseen(tolerance):
+    """A clock that is fast and then slow by 1e-6 is off by 1e-3 of a step in between."""
+    step = 1.5e-4 * np.repeat([1 + 9e-7, 1 - 9e-7], 1000)
+    time = np.append(0.0, np.cumsum(step))
+    few = np.append(time[5::97], time[-1])
+    asked = {"drive": ("z", 0.4), **SEEN, "force": rd.Sine(1.0, 333.0), "tolerance": tolerance}
+    begun = CHAIN.transient(np.append(0.0, few), **asked)
+    every = CHAIN.transient(time, **asked)
+    at = np.searchsorted(time, few)
+    apart = np.abs(every.value[0, at] - begun.value[0, 1:])
+    assert (apart <= every.error[0, at] + begun.error[0, 1:]).all()
+
+
 @pytest.mark.parametrize("gap", [1e-3, 1e-9, 0.0], ids=["near", "close", "neighbours"])
 def test_transform_of_samples_keeps_its_digits_where_times_are_close(gap):
     """Corners over the square of the rate had none left of a jump between neighbouring times."""
@@ -168,7 +182,7 @@ def test_transform_of_samples_keeps_its_digits_where_times_are_close(gap):
     time = np.sort(drawn.uniform(0.0, 0.3, 60))
     time = np.insert(time, 31, max(time[30] + gap, np.nextafter(time[30], 1.0)))
     sample = drawn.standard_normal(61)
-    grid = Grid.over(time, 1.25, 1e-9, 0.0, omega=0.0, least=2)
+    grid = Grid.over(time, (1.25, 1e-9), 0.0, omega=0.0, least=2, tolerance=1e-3)
     value = transform(Samples(time, sample), grid)
     with mp.workdps(40):
         since = [*(mp.mpf(t) - mp.mpf(time[0]) for t in time), mp.mpf(grid.period)]

@@ -10,16 +10,24 @@ import numpy as np
 from ...base.array import Complex, Index, Real
 from ...base.computed import computed
 
-EVEN = 1e-6  # Times whose steps differ by this part of one are even.
+EVEN = 1e-6  # Times that are off by this part of a step are even,
+SHARE = 0.1  # or by this part of a tolerance, or by
+ROUNDED = 4 * np.finfo(float).eps  # this part of the latest.
 FINEST = 64  # Lines reach so many times as far as the times resolve at first, at most.
 LEAST = 256  # Other times are looked at by so many even steps at least.
 MOST = 1 << 22  # So many numbers are computed at a time.
 
 
-def is_even(time: Real) -> bool:
-    """Whether times are in equal steps."""
+def is_even(time: Real, tolerance: float = math.inf) -> bool:
+    """Whether times are in equal steps, as near as a tolerance asks."""
+    rounded = ROUNDED * np.abs(time[[0, -1]]).max() * (len(time) - 1) / float(time[-1] - time[0])
+    return off(time) <= max(min(EVEN, SHARE * tolerance), rounded)
+
+
+def off(time: Real) -> float:
+    """Return how far times are from ones in equal steps, over a step."""
     step = float(time[-1] - time[0]) / (len(time) - 1)
-    return bool(np.abs(np.diff(time) / step - 1).max() <= EVEN)
+    return float(np.abs(time - np.linspace(time[0], time[-1], len(time))).max()) / step
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +47,14 @@ class Grid:
 
     @classmethod
     def over(
-        cls, time: Real, longer: float, decay: float, growth: float, *, omega: float, least: int
+        cls,
+        time: Real,
+        period: tuple[float, float],
+        growth: float,
+        *,
+        omega: float,
+        least: int,
+        tolerance: float,
     ) -> Grid:
         """Return one of a period so much longer than the record, e^(-a P) = decay but for growth.
 
@@ -47,9 +62,10 @@ class Grid:
         """
         from scipy.fft import next_fast_len
 
+        longer, decay = period
         steps = len(time) - 1
         span = float(time[-1] - time[0])
-        even = is_even(time)
+        even = is_even(time, tolerance)
         if not even:
             steps = max(steps, LEAST)
         count = 2 * next_fast_len(math.ceil(longer * (steps + 1) / 2), real=True)

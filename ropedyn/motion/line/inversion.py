@@ -30,10 +30,10 @@ from ..moved import Moved
 from ..request import Run
 from .at_once import LOOKS, at_once, at_once_by, response
 from .force_transform import transform
-from .grid import LEAST, Grid
+from .grid import LEAST, Grid, off
 from .transfer import TransferFunctions
 
-PERIODS = ((1e-6, 1.25, 1e-9), (0.0, 2.0, 1e-11))
+PERIODS = ((1e-6, (1.25, 1e-9)), (0.0, (2.0, 1e-11)))
 """From this tolerance on the period is so much longer than the record, and this alias is left."""
 SHARES = (0.5, 0.7, 0.85)  # Sums that end at this part of the rates tell the error,
 TIMES = 2.0  # so many times over,
@@ -92,7 +92,7 @@ class Line:
     @classmethod
     def of(cls, run: Run, tolerance: float) -> Line:
         """Look at as many as the times resolve, and at twice as many under blows at an instant."""
-        longer, decay = next(pair for least, *pair in PERIODS if tolerance >= least)
+        period = next(pair for least, pair in PERIODS if tolerance >= least)
         begin = float(run.time[0])
         loads = [Step(-load, time=begin) for load in run.loads.values()]
         forces = (*run.forces, *run.blows, *loads)
@@ -100,9 +100,10 @@ class Line:
         # whose responses are not small up to where the sum ends
         least = 2 if any(force.blows for force in forces) else 1
         transfer = run.look(tuple(run.places), run.responses)
-        grid = Grid.over(run.time, longer, decay, transfer.growth, omega=omega, least=least)
+        reach: dict[str, Any] = {"omega": omega, "least": least}
+        grid = Grid.over(run.time, period, transfer.growth, **reach, tolerance=tolerance)
         every = slice(0, len(grid.s))
-        return cls(run, transfer, forces, grid, transfer.at(grid.s), (every,), decay)
+        return cls(run, transfer, forces, grid, transfer.at(grid.s), (every,), period[1])
 
     def further(self, times: int) -> Line:
         """Look so many times as far."""
@@ -276,7 +277,10 @@ class Line:
         since = grid.time - grid.begin
         if grid.even:
             even = slice(0, len(since) * grid.finer, grid.finer)
-            return whole[:, even].copy(), differ[:, even].copy(), later
+            value = whole[:, even].copy()
+            # motion goes on for as long as times are off
+            goes = off(grid.time) * np.abs(np.diff(value, axis=1)).max(axis=1, keepdims=True)
+            return value, differ[:, even] + goes, later
         at = np.rint(since * (2 * grid.lines / grid.period)).astype(np.intp)
         ended = smooth * np.exp(-36 * share**SHARP)
         return grid.summed(ended, since), differ[:, at], later
