@@ -11,7 +11,7 @@ from ...scene.force import Chirp, Force, Samples, Sum
 from ..modal.chirp import chirp_between, follow
 from ..modal.convolution import SinePiece, pieces
 from ..modal.exponentials import ramp
-from .grid import Grid
+from .grid import Grid, is_even
 
 ORDER = 16  # The highest of rates of one order over the lowest.
 SPREAD = 7  # Terms of a jump spread over 1/omega.
@@ -23,8 +23,9 @@ def transform(force: Force, grid: Grid) -> Complex:
         still = np.zeros(len(grid.s), dtype=np.complex128)
         return sum((transform(one, grid) for one in force.forces), still)
     if isinstance(force, Samples):
-        even = grid.even and len(force.time) == len(grid.time)
-        return _of_samples(force, grid) if even else _of_corners(force, grid)
+        if grid.even and len(force.time) == len(grid.time):
+            return _of_samples(force, grid)
+        return (_of_hats if is_even(force.time, 0.0) else _of_corners)(force, grid)
     if isinstance(force, Chirp):
         return _of_chirp(force, grid)
     turns = pieces(force, grid.begin)
@@ -85,6 +86,17 @@ def _of_samples(force: Samples, grid: Grid) -> Complex:
 def _taper(count: int) -> Real:
     """Return half a cosine from 1 to 0 without its ends."""
     return np.asarray((1 + np.cos(np.pi * np.arange(1, count + 1) / (count + 1))) / 2)
+
+
+def _of_hats(force: Samples, grid: Grid) -> Complex:
+    """Transform straight lines between even samples of other steps than the grid's."""
+    time, sample, s = force.time - grid.begin, force.sample, grid.s
+    h, left = float(time[-1] - time[0]) / (len(time) - 1), float(grid.period - time[-1])
+    z = s * h
+    hats = (np.sinh(z / 2) / (z / 2)) ** 2 * grid.exponentials(time, sample, range(len(s)))
+    # half of one at the first; after the last the force goes to 0 on a straight line
+    last = sample[-1] * np.exp(-s * time[-1]) * (left * ramp(-s * left) - h * ramp(-z))
+    return np.asarray(h * (hats - sample[0] * ramp(z)) + last)
 
 
 def _of_corners(force: Samples, grid: Grid) -> Complex:
