@@ -89,7 +89,4 @@ def _(force: Samples, omega: Real, begin: float, end: float) -> Complex:
 
 @transform.register
 def _(force: Sum, omega: Real, begin: float, end: float) -> Complex:
-    total = np.zeros(omega.shape, dtype=np.complex128)
-    for one in force.forces:
-        total += transform(one, omega, begin, end)
-    return total
+    return np.asarray(sum(transform(one, omega, begin, end) for one in force.forces))

@@ -243,9 +243,7 @@ def _first(run: Run) -> int:
     times = len(run.time) - 1
     highest = max((force.highest for force in run.forces), default=0.0)
     least = max(FIRST, 4 * math.ceil(highest * float(run.time[-1] - run.time[0])))
-    if not is_even(run.time):
-        return max(least, times)
-    return times * -(-least // times)
+    return times * -(-least // times) if is_even(run.time) else max(least, times)
 
 
 def _unknown(run: Run, tolerance: float, count: int, late: Any, known: Moved) -> SolveError:

@@ -191,7 +191,7 @@ def test_transform_of_samples_keeps_its_digits_where_times_are_close(gap):
     drawn = np.random.default_rng(4)
     time, sample = _times(gap, drawn), drawn.standard_normal(61)
     over = np.linspace(time[0], time[-1], 47)
-    grid = Grid.over(over, (1.25, 1e-9), 0.0, omega=0.0, least=2, tolerance=1e-3)
+    grid = Grid.over(over, 1e-3, 0.0, 0.0, 2)
     value = transform(Samples(time, sample), grid)
     with mp.workdps(40):
         since = [*(mp.mpf(t) - mp.mpf(time[0]) for t in time), mp.mpf(grid.period)]

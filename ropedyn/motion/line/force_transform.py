@@ -20,8 +20,7 @@ SPREAD = 7  # Terms of a jump spread over 1/omega.
 def transform(force: Force, grid: Grid) -> Complex:
     """Return the transform of a force at the rates of a grid, shape (lines,)."""
     if isinstance(force, Sum):
-        still = np.zeros(len(grid.s), dtype=np.complex128)
-        return sum((transform(one, grid) for one in force.forces), still)
+        return np.asarray(sum(transform(one, grid) for one in force.forces))
     if isinstance(force, Samples):
         if grid.even and len(force.time) == len(grid.time):
             return _of_samples(force, grid)
@@ -59,8 +58,8 @@ def _of_chirp(force: Chirp, grid: Grid) -> Complex:
     now = chirp_between(force, grid.begin, end)
     if now.is_steady:
         w, f = now.frequency, now.amplitude
-        sine = SinePiece(grid.begin, w, f * np.sin(now.phase), f * np.cos(now.phase))
-        return _of_sines([sine, SinePiece(end)], grid)
+        swing = w, f * np.sin(now.phase), f * np.cos(now.phase)
+        return _of_sines([SinePiece(grid.begin, *swing), SinePiece(end)], grid)
     whole = follow(grid.s, now, np.array([now.span]))[:, 0]
     return np.asarray(np.exp(-grid.s * now.span) * whole)
 
@@ -71,7 +70,8 @@ def _of_samples(force: Samples, grid: Grid) -> Complex:
     h, count, given = grid.step, grid.count, len(force.sample)
     spare = (count - given) // 2
     f = np.zeros(count)
-    f[:given], f[given : given + spare] = force.sample, force.sample[-1] * _taper(spare)
+    fading = (1 + np.cos(np.pi * np.arange(1, spare + 1) / (spare + 1))) / 2
+    f[:given], f[given : given + spare] = force.sample, force.sample[-1] * fading
     spectrum = np.fft.fft(f * np.exp(-grid.a * h * np.arange(count)))
     z = grid.s * h
     # what e^z makes comes back with the samples; z does not
@@ -81,11 +81,6 @@ def _of_samples(force: Samples, grid: Grid) -> Complex:
     if force.sample[0]:
         total -= force.sample[0] * ramp(z)
     return np.asarray(h * total)
-
-
-def _taper(count: int) -> Real:
-    """Return half a cosine from 1 to 0 without its ends."""
-    return np.asarray((1 + np.cos(np.pi * np.arange(1, count + 1) / (count + 1))) / 2)
 
 
 def _of_hats(force: Samples, grid: Grid) -> Complex:

@@ -10,6 +10,8 @@ import numpy as np
 from ...base.array import Complex, Index, Real
 from ...base.computed import computed
 
+PERIODS = ((1e-6, (1.25, 1e-9)), (0.0, (2.0, 1e-11)))
+"""From this tolerance on the period is so much longer than the record, and this alias is left."""
 EVEN = 1e-6  # Times that are off by this part of a step are even,
 SHARE = 0.1  # or by this part of a tolerance, or by
 ROUNDED = 4 * np.finfo(float).eps  # this part of the latest.
@@ -26,8 +28,8 @@ def is_even(time: Real, tolerance: float = math.inf) -> bool:
 
 def off(time: Real) -> float:
     """Return how far times are from ones in equal steps, over a step."""
-    step = float(time[-1] - time[0]) / (len(time) - 1)
-    return float(np.abs(time - np.linspace(time[0], time[-1], len(time))).max()) / step
+    even, step = np.linspace(time[0], time[-1], len(time), retstep=True)
+    return float(np.abs(time - even).max() / step)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,25 +46,14 @@ class Grid:
     count: int  # and the period: an even number
     a: float  # [1/s]
     finer: int  # lines reach so many times as far as these steps resolve
+    decay: float  # e^(-a P), but for growth
 
     @classmethod
-    def over(
-        cls,
-        time: Real,
-        period: tuple[float, float],
-        growth: float,
-        *,
-        omega: float,
-        least: int,
-        tolerance: float,
-    ) -> Grid:
-        """Return one of a period so much longer than the record, e^(-a P) = decay but for growth.
-
-        Its lines reach `least` times as far as the times resolve, and up to an angular frequency.
-        """
+    def over(cls, time: Real, tolerance: float, growth: float, omega: float, least: int) -> Grid:
+        """Return one whose lines reach so many times as far as the times resolve, and to omega."""
         from scipy.fft import next_fast_len
 
-        longer, decay = period
+        longer, decay = next(pair for most, pair in PERIODS if tolerance >= most)
         steps = len(time) - 1
         span = float(time[-1] - time[0])
         even = is_even(time, tolerance)
@@ -72,7 +63,7 @@ class Grid:
         a = growth - math.log(decay) * steps / (count * span)
         resolved = math.pi * steps / span
         finer = max(least, math.ceil(min(omega / resolved, FINEST)), math.ceil(2 * LEAST / count))
-        return cls(time, even, steps, count, a, finer)
+        return cls(time, even, steps, count, a, finer, decay)
 
     @property
     def begin(self) -> float:

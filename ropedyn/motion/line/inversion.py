@@ -33,8 +33,6 @@ from .force_transform import transform
 from .grid import LEAST, Grid, off
 from .transfer import TransferFunctions
 
-PERIODS = ((1e-6, (1.25, 1e-9)), (0.0, (2.0, 1e-11)))
-"""From this tolerance on the period is so much longer than the record, and this alias is left."""
 SHARES = (0.5, 0.7, 0.85)  # Sums that end at this part of the rates tell the error,
 TIMES = 2.0  # so many times over,
 LAST = 8  # What is left beyond the rates is told by the last of so many parts of them.
@@ -87,23 +85,18 @@ class Line:
     grid: Grid
     value: Complex  # (drives, responses, lines + 1)
     parts: tuple[slice, ...]  # of the lines, one after another, that were looked at together
-    decay: float  # e^(-a P)
 
     @classmethod
     def of(cls, run: Run, tolerance: float) -> Line:
         """Look at as many as the times resolve, and at twice as many under blows at an instant."""
-        period = next(pair for least, pair in PERIODS if tolerance >= least)
-        begin = float(run.time[0])
-        loads = [Step(-load, time=begin) for load in run.loads.values()]
+        loads = [Step(-load, time=float(run.time[0])) for load in run.loads.values()]
         forces = (*run.forces, *run.blows, *loads)
         omega = 2 * math.pi * REACH * max((f.bandwidth for f in forces), default=0.0)
         # whose responses are not small up to where the sum ends
         least = 2 if any(force.blows for force in forces) else 1
         transfer = run.look(tuple(run.places), run.responses)
-        reach: dict[str, Any] = {"omega": omega, "least": least}
-        grid = Grid.over(run.time, period, transfer.growth, **reach, tolerance=tolerance)
-        every = slice(0, len(grid.s))
-        return cls(run, transfer, forces, grid, transfer.at(grid.s), (every,), period[1])
+        grid = Grid.over(run.time, tolerance, transfer.growth, omega, least)
+        return cls(run, transfer, forces, grid, transfer.at(grid.s), (slice(0, len(grid.s)),))
 
     def further(self, times: int) -> Line:
         """Look so many times as far."""
@@ -126,7 +119,7 @@ class Line:
         value += self._resting()
         for d, one in enumerate(self.forces):
             value += convolve(fast, d, one, run.time, order)
-        alias = ALIAS * self.decay * later
+        alias = ALIAS * self.grid.decay * later
         # modes beyond the rates, where none is near their end, are seen by what they do there
         last = np.median(np.abs(smooth[:, -(grid.lines // LAST) :]), axis=1)
         alias += grid.omega / math.pi * last + self._unseen()
@@ -293,7 +286,7 @@ class Line:
         if ((size - TIMES * differ).max(axis=1, initial=0.0) <= GROWN * record).all():
             return most
         # it has hardly begun, as where a wave has not arrived
-        slower = grid.a + (math.log(self.decay) - math.log(ROUGH) / 2) / grid.period
+        slower = grid.a + (math.log(self.grid.decay) - math.log(ROUGH) / 2) / grid.period
         twice = replace(grid, count=2 * grid.count, a=slower, finer=1)
         line = replace(self, grid=twice, value=self.transfer.at(twice.s))
         ends = np.exp(-36 * np.linspace(0.0, 1.0, twice.lines + 1) ** SHARP)
@@ -339,8 +332,7 @@ def _largest(force: Force, time: Real) -> tuple[float, float]:
 def _excited(force: Force, time: Real, omega: float) -> tuple[float, float, float]:
     """Bound how far a force moves a mode from omega on, over r/omega^2, and derivatives of that."""
     jump, blow = _largest(force, time)
-    begin, end = float(time[0]), float(time[-1])
-    inside = np.array([at for at in force.breaks if begin < at <= end])
+    inside = np.array([at for at in force.breaks if time[0] < at <= time[-1]])
     corners = force.rate(inside) - force.rate(np.nextafter(inside, -np.inf))
     slopes = force.rate(time) if is_sampled(force) else force.rate(time[:1])
     corners = np.concatenate([corners, np.diff(slopes, prepend=0.0)])
