@@ -79,10 +79,9 @@ class _Strip:
         self.balance, self.omega = balance, omega
         self.k = np.arange(-harmonics, harmonics + 1)
         pairs = (self.k[:, None] - self.k) % balance.samples
-        # (k, p, l j)
-        shape = len(self.k), balance.points, -1
-        self.stiff = stiff[..., pairs].transpose(2, 0, 3, 1).reshape(shape)
-        self.drag = drag[..., pairs].transpose(2, 0, 3, 1).reshape(shape) if drag.any() else None
+        # (k, p, j, l)
+        self.stiff = stiff[..., pairs].transpose(2, 0, 1, 3)
+        self.drag = drag[..., pairs].transpose(2, 0, 1, 3) if drag.any() else None
 
     def followed(self) -> tuple[Real, Complex, Real]:
         """Return a way on which D turns little between neighbours, D/|D| and ln |D| there."""
@@ -123,12 +122,13 @@ class _Strip:
 
     def _some(self, nu: Real) -> tuple[Complex, Real]:
         m, n = self.balance.points, len(self.k)
-        omega = nu[:, None] + self.k * self.omega
-        H = -self.balance.transfer.at(omega)[..., :m, :-1]
-        matrix = H @ self.stiff
+        H = self.balance.transfer.at(nu[:, None] + self.k * self.omega)[..., :m, :-1]
+        felt = self.stiff[None]
         if self.drag is not None:
-            matrix += (1j * omega[..., None, None] * H) @ self.drag
-        matrix = matrix.reshape(len(nu), n * m, n * m)
-        np.einsum("nii->ni", matrix)[...] += 1.0
-        sign, size = np.linalg.slogdet(matrix)
+            rate = 1j * (nu[:, None] + self.k * self.omega)
+            felt = felt + self.drag[None] * rate[:, None, None, None]
+        # (nu, k, i, p) (nu, k, p, j l)
+        moved: Complex = (H @ felt.reshape(*felt.shape[:3], m * n)).reshape(len(nu), n * m, m, n)
+        moved = moved.transpose(0, 1, 3, 2).reshape(len(nu), n * m, n * m)
+        sign, size = np.linalg.slogdet(np.eye(n * m) - moved)
         return np.where(sign == 0, 1.0, sign), size
