@@ -123,6 +123,23 @@ def test_stability_is_that_of_the_monodromy(stops):
     assert max(one[2] for one in orbits) < (1e-3 if stops else 1e-8)
 
 
+def test_stability_where_a_law_depends_on_velocity_is_that_of_the_monodromy():
+    """The law drives where the rope moves little and takes where it moves far."""
+    law = rd.NodeForce(0.5, lambda t, u, v: -3e5 * u**3 + (1.0 - 4e4 * u**2) * v)
+    damping = rd.RayleighDamping(2.0, 0.0)
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping, parts=[law])
+    driven, states = states_of(scene.compile(elements=4, element="rigid"), 1.0)
+    told, wanted = [], []
+    for state in settled(driven, states[:: max(1, len(states) // 12)]):
+        away, multiplier = multipliers(driven, state)
+        assert away < 1e-9  # measured: at most 3e-11
+        if np.abs(np.abs(multiplier) - 1).min() > 1e-3:
+            told.append(growing(state.balance, state.place.x, state.place.p, driven.growing))
+            wanted.append(int((np.abs(multiplier) > 1).sum()))
+    assert told == wanted
+    assert len(set(wanted)) > 1
+
+
 def test_disturbances_are_not_told_by_counts_that_agree():
     # 9 and 18 harmonics both told three; a multiplier is 0.9914
     stops = [rd.Stop(0.25, 9539.0, gap=1.4436e-3), rd.Stop(0.25, 9539.0, gap=2.11255e-3, side=-1)]

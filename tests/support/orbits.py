@@ -33,20 +33,25 @@ def random_scene(rng, stops):
 
 
 def law_of(scene):
-    """Force and slope of what is not linear, of the displacement of its point."""
+    """Force and slopes of what is not linear, of the displacement and velocity of its point."""
 
-    def stopped(u):
+    def stopped(u, v):
         force = slope = 0.0
         for part in scene.parts:
             deep = part.side * u - part.gap
             if deep > 0:
                 force -= part.side * part.stiffness * deep
                 slope -= part.stiffness
-        return force, slope
+        return force, slope, 0.0
 
-    def hardening(u):
+    def hardening(u, v):
         law = scene.parts[0].law
-        return law(0.0, u, 0.0), 3 * law(0.0, u, 0.0) / u if u else 0.0
+        # a cubic of u, linear in v: five points are exact
+        step = 1e-3
+        far = law(0.0, u + 2 * step, v) - law(0.0, u - 2 * step, v)
+        near = law(0.0, u + step, v) - law(0.0, u - step, v)
+        by_v = (law(0.0, u, v + 1.0) - law(0.0, u, v - 1.0)) / 2
+        return law(0.0, u, v), (8 * near - far) / (12 * step), by_v
 
     return stopped if isinstance(scene.parts[0], rd.Stop) else hardening
 
@@ -95,10 +100,11 @@ def multipliers(driven, state):
 
     def rate(t, y):
         u, v, Y = y[:n], y[n : 2 * n], y[2 * n :].reshape(2 * n, 2 * n)
-        force, slope = law(at @ u)
+        force, slope, drag = law(at @ u, at @ v)
         a = inverse @ (asked.amplitude * np.cos(omega * t) * push + force * at - C @ v - K @ u)
-        stiff = K - slope * np.outer(at, at)
-        Z = np.concatenate([Y[n:], -inverse @ (C @ Y[n:] + stiff @ Y[:n])])
+        here = np.outer(at, at)
+        turned = (C - drag * here) @ Y[n:] + (K - slope * here) @ Y[:n]
+        Z = np.concatenate([Y[n:], -inverse @ turned])
         return np.concatenate([v, a, Z.ravel()])
 
     period = 2 * np.pi / omega
