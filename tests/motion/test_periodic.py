@@ -196,6 +196,22 @@ def test_continuous_spans_with_any_damping_are_the_limit_of_chains(damping):
     assert np.isinf(chain.mesh_error).all()
 
 
+@pytest.mark.parametrize("element", ["tensed", "rigid"])
+def test_a_law_beside_damping_by_modes_above_the_highest_mode(element):
+    """A spring told as a law: harmonics pass 160 Hz, where the sum of 15 modes cancels."""
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ModalDamping(0.0175))
+    lines, k = [13.0, 23.0, 41.0, 59.0], 700.0
+    ask = {"drive": ("z", 0.25), "response": [("z", 0.75), ("z", 0.5)]}
+    H = scene.compile(elements=16, element=element).frf(
+        lines, **ask | {"drive": [("z", 0.25), ("z", 0.5)]}
+    )
+    (far, own), (by_spring, at_spring) = H.value.reshape(2, 2, -1).transpose(1, 0, 2)
+    exact = far - by_spring * k * own / (1 + k * at_spring)
+    sprung = scene.replace(parts=[rd.NodeForce(0.5, lambda t, u, v: -k * u)])
+    stepped = sprung.compile(elements=16, element=element).stepped_sine(lines, amplitude=0.5, **ask)
+    assert np.abs(stepped.value[0] / exact - 1).max() < 1e-12
+
+
 # --- dry friction --------------------------------------------------------------------------------
 
 

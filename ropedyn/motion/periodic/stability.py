@@ -79,9 +79,10 @@ class _Strip:
         self.balance, self.omega = balance, omega
         self.k = np.arange(-harmonics, harmonics + 1)
         pairs = (self.k[:, None] - self.k) % balance.samples
-        # (k, p, j, l)
-        self.stiff = stiff[..., pairs].transpose(2, 0, 1, 3)
-        self.drag = drag[..., pairs].transpose(2, 0, 1, 3) if drag.any() else None
+        # (k, p, l j)
+        wide = (len(self.k), len(stiff), -1)
+        self.stiff = stiff[..., pairs].transpose(2, 0, 3, 1).reshape(wide)
+        self.drag = drag[..., pairs].transpose(2, 0, 3, 1).reshape(wide) if drag.any() else None
 
     def followed(self) -> tuple[Real, Complex, Real]:
         """Return a way on which D turns little between neighbours, D/|D| and ln |D| there."""
@@ -104,11 +105,14 @@ class _Strip:
         return way, D, size
 
     def _looks(self) -> Real:
-        """Return where D is looked at first: also where H changes, folded into the strip."""
+        """Return where D is looked at first: also beside peaks of H, folded into the strip.
+
+        A peak leads D around a circle that begins and ends at one place, and is opposite to it.
+        """
         half = self.omega / 2
-        edge = self.balance.transfer.edge
-        edge = edge[edge <= self.k[-1] * self.omega + half]
-        away = np.abs((edge + half) % self.omega - half)
+        peak = self.balance.transfer.peaks()
+        peak = peak[peak <= self.k[-1] * self.omega + half]
+        away = np.abs((peak + half) % self.omega - half)
         looks = np.unique(np.concatenate([np.linspace(0.0, half, LOOKS), away]))
         return looks[np.append(True, np.diff(looks) > 1e-12 * half)]
 
@@ -123,12 +127,10 @@ class _Strip:
     def _some(self, nu: Real) -> tuple[Complex, Real]:
         m, n = self.balance.points, len(self.k)
         H = self.balance.transfer.at(nu[:, None] + self.k * self.omega)[..., :m, :-1]
-        felt = self.stiff[None]
+        moved: Complex = H @ self.stiff
         if self.drag is not None:
             rate = 1j * (nu[:, None] + self.k * self.omega)
-            felt = felt + self.drag[None] * rate[:, None, None, None]
-        # (nu, k, i, p) (nu, k, p, j l)
-        moved: Complex = (H @ felt.reshape(*felt.shape[:3], m * n)).reshape(len(nu), n * m, m, n)
-        moved = moved.transpose(0, 1, 3, 2).reshape(len(nu), n * m, n * m)
-        sign, size = np.linalg.slogdet(np.eye(n * m) - moved)
+            moved += (H @ self.drag) * np.repeat(rate, m, axis=1)[:, None, None]
+        matrix = np.eye(n * m) - moved.reshape(len(nu), n * m, n * m)
+        sign, size = np.linalg.slogdet(matrix)
         return np.where(sign == 0, 1.0, sign), size

@@ -45,7 +45,7 @@ class PanelledTransfer:
 
     def __init__(self, ask: Ask, known: Callable[[Real], Real]) -> None:
         self.ask = ask
-        self.known = known  # their relative errors, (f,)
+        self.known = known  # their errors, of the largest at each frequency, (f,)
         self.edge = np.zeros(1)  # (panels + 1,) [rad/s]
         self.series = np.zeros((0, 0, 0), dtype=np.complex128)  # (panels, terms, pairs)
         self.shape: tuple[int, ...] = ()  # of what is asked for at one frequency
@@ -112,6 +112,13 @@ class PanelledTransfer:
         value = (both @ self.series[panel]).reshape(*omega.shape, 2, *self.shape)
         return value[..., 0, :, :], value[..., 1, :, :]
 
+    def peaks(self) -> Real:
+        """Return the edges of panels on which an entry of H is larger than beside them [rad/s]."""
+        size = np.abs(self.series).sum(axis=1)
+        around = np.pad(size, ((1, 1), (0, 0)))
+        top = ((size > around[:-2]) & (size >= around[2:])).any(axis=1)
+        return np.unique([self.edge[:-1][top], self.edge[1:][top]])
+
     def _basis(self, omega: Real) -> tuple[Index, Real, Real]:
         """Return panels, Chebyshev's polynomials there, (f, terms), and their argument's slope."""
         self.cover(float(omega.max(initial=0.0)))
@@ -130,9 +137,9 @@ def _is_rough(series: Complex, known: Real) -> Flags:
     """Whether the last terms on a panel are neither small nor rounding, (panels,)."""
     size = np.abs(series)
     largest = size.max(axis=1)
-    largest = np.maximum(largest, FLOOR * largest.max(axis=1, initial=0.0, keepdims=True))
-    small = np.maximum(SMALL, known)[:, None, None] * largest[:, None]
-    return np.asarray((size[:, -LAST:] > small).any(axis=(1, 2)))
+    most = largest.max(axis=1, initial=0.0, keepdims=True)
+    small = np.maximum(SMALL * np.maximum(largest, FLOOR * most), known[:, None] * most)
+    return np.asarray((size[:, -LAST:] > small[:, None]).any(axis=(1, 2)))
 
 
 def _undamped(omega: float) -> SolveError:
