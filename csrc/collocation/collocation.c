@@ -186,14 +186,18 @@ static bool advance(const struct solver *solver, double *R, double *worst)
     }
 }
 
-/* forces of this step are measured by the largest before it and at its first guess */
+/* forces of this step are measured by the largest before it and at its first guess, and by what
+   laws say of the largest motion: points that hardly move yet do so within its rounding */
 static void measure(const struct solver *solver, const double *R)
 {
     const size_t n = solver->step->laws, all = solver->step->stages * n;
     memcpy(solver->scale, solver->size + 2 * n, n * sizeof *R);
     for (size_t i = 0; i < all; i++) {
+        const size_t d = i % n;
+        const double *slope = solver->work->slope + 2 * (i - d) + d, *size = solver->size + d;
         const double most = fmax(fabs(R[i]), fabs(solver->work->wanted[i]));
-        solver->scale[i % n] = fmax(solver->scale[i % n], most);
+        const double moved = fabs(slope[0]) * size[0] + fabs(slope[n]) * size[n];
+        solver->scale[d] = fmax(solver->scale[d], fmax(most, isfinite(moved) ? moved : 0));
     }
 }
 

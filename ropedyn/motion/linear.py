@@ -26,11 +26,10 @@ from ..scene import damping
 from .coupled.energy import of_chain
 from .history import Balance, History
 from .line.inversion import invert
-from .mesh_error import against_spans
 from .modal.energy_balance import balance, tells_energy
 from .modal.expansion import refuse_losses
 from .modal.superposition import apart, estimated, fastest, superpose
-from .moved import Moved
+from .moved import Moved, against_spans
 from .request import TOLERANCE, Run
 
 MORE, MOST = 4, 1600  # So many times more modes are summed next, and so many at most.

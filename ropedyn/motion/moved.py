@@ -1,12 +1,18 @@
-"""What a method of linear motion answers."""
+"""What a method of linear motion answers, and how far elements are from continuous spans."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ..base.array import Real
+from ..base.errors import SceneError, SolveError
+from ..chain.compile import compile_scene
+from .history import History
+from .request import Run
 
 
 class Moved(NamedTuple):
@@ -30,3 +36,14 @@ class Moved(NamedTuple):
         error = self.error.max(axis=1)
         none = np.where(error > 0, np.inf, 0.0)
         return np.divide(error, size, out=none, where=size > 0)
+
+
+def against_spans(run: Run, value: Real, solve: Callable[[Run], History | Moved]) -> Real:
+    """Return the distance and the error of that, as value; infinite where there is no answer."""
+    if run.model.element == "continuous":
+        return np.zeros(value.shape)
+    try:
+        true = solve(replace(run, model=compile_scene(run.model.scene), snapshots=np.zeros(0)))
+    except (SceneError, SolveError):
+        return np.full(value.shape, np.inf)
+    return np.abs(value - true.value) + true.error

@@ -35,9 +35,8 @@ from .coupled.energy import of_chain
 from .history import History, ended_by
 from .line.grid import is_even
 from .linear import nearest, snapshots_of, within_tolerance
-from .mesh_error import against_spans
 from .modal.expansion import refuse_losses
-from .moved import Moved
+from .moved import Moved, against_spans
 from .request import TOLERANCE, Run
 from .smooth.laws import LawFailure, SmoothLaw
 from .smooth.smooth import scale

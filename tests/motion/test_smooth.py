@@ -63,6 +63,73 @@ def test_hardening_spring_is_duffings_within_the_error_it_says(tolerance, claim)
     claim((np.abs(history.value[0] - duffing(time)) / history.error[0]).max())
 
 
+@pytest.mark.claim(
+    "A spring on one side by collocation, accelerations on 40 grids of times: share of those with a "
+    "sample that is off by more than is said",
+    reference="half periods of two cosines in turn",
+    accepted=0.025,
+)
+def test_where_a_law_has_a_corner_runs_that_agree_by_chance_are_not_believed(claim):
+    stiff = 0.7 * STIFFNESS
+    law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -stiff * np.maximum(u, 0.0))
+    slow, fast = math.sqrt(STIFFNESS / MASS), math.sqrt((STIFFNESS + stiff) / MASS)
+    beyond = []
+    for count in range(40, 240, 5):
+        time = np.linspace(0.0, 0.3 + 1e-3 * count, count)
+        since = np.mod(time, math.pi / slow + math.pi / fast)
+        # a quarter of the fast period above 0, half of the slow one below, and the other quarter
+        below, above = since - math.pi / 2 / fast, since - math.pi / 2 / fast - math.pi / slow
+        exact = np.where(
+            above >= 0,
+            -fast * np.sin(fast * above),
+            np.where(below > 0, slow * np.sin(slow * below), -fast * np.cos(fast * since)),
+        )
+        history = released(mass_on_a_string(law), time, quantity="acceleration")
+        assert history.cost.method == "collocation"
+        off = np.abs(history.value[0] - AMPLITUDE * fast * exact)
+        beyond.append((off > history.error[0]).any())
+    claim(np.mean(beyond))
+
+
+def test_a_law_that_nothing_has_reached_beside_a_dashpot():
+    """Its forces are 1e-50 N at first, which is no measure of what rounding leaves."""
+    parts, rope = [rd.Dashpot(0.25, 1.0)], rd.Rope(1.0, 0.1)
+    scene = rd.Scene(rope, tension=100.0, damping=rd.ViscousDamping(0.6), parts=parts)
+    how = {"elements": 20, "element": "rigid"}
+    time, begin = np.linspace(0.0, 0.15, 151), 0.09264800725747598
+    linear = scene.compile(**how)
+    K, M, C = (
+        m().toarray() for m in (linear.stiffness_matrix, linear.mass_matrix, linear.damping_matrix)
+    )
+    mass, n = np.diag(M), len(K)
+
+    def rhs(t, y):
+        f = -K @ y[:n] - C @ y[n:]
+        f[1] += 1.0
+        f[9] -= 1e6 * y[9] ** 3
+        return np.concatenate([y[n:], f / mass])
+
+    late = time[time >= begin]
+    found = solve_ivp(rhs, (begin, 0.15), np.zeros(2 * n), "DOP853", late, rtol=1e-11, atol=1e-16)
+    exact = np.concatenate([np.zeros(len(time) - len(late)), found.y[9]])
+    hard = rd.NodeForce(0.5, lambda t, u, v: -1e6 * u**3)
+    model = scene.replace(parts=[*parts, hard]).compile(**how)
+    push = {"drive": ("z", 0.1), "force": rd.Step(1.0, time=begin)}
+    history = model.transient(time, response=("z", 0.5), **push)
+    assert history.cost.method == "collocation"
+    assert (np.abs(history.value[0] - exact) <= history.error[0] + 1e-9 * exact.max()).all()
+
+
+def test_a_blow_at_an_instant_that_modes_do_not_resolve_is_refused():
+    # half of the modes do not converge in the steps of all of them, which said nothing once
+    damping = rd.RayleighDamping(6.0, 0.0)
+    law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -1e6 * u**3)
+    model = rd.Scene(ROPE, tension=TENSION, damping=damping, parts=[law]).compile()
+    blow = rd.Impulse(0.01, time=0.0501)
+    with pytest.raises(rd.SolveError, match="needs more than 512 modes: with these the error is"):
+        model.transient(np.linspace(0.0, 0.3, 301), drive=MIDDLE, force=blow)
+
+
 def test_law_that_takes_arrays_is_called_with_them_and_says_the_same():
     calls, time = [], np.linspace(0.0, 0.5, 301)
     many = released(mass_on_a_string(hardening(calls)), time)

@@ -16,7 +16,7 @@ from ...chain.port import moving
 from ..acting import scene_laws
 from ..history import Balance
 from ..request import TOLERANCE, Run
-from ..smooth.steps import Steps
+from ..smooth.passage import Steps
 from ..smooth.system import OutputTimes
 from .steps import CoupledPassage, StepsTaken
 from .system import CoupledSystem, moving_together

@@ -9,11 +9,8 @@ import numpy as np
 
 from ... import _core
 from ...base.array import Real
-from ...base.errors import SolveError
 from ..acting import core_numbers
-from ..smooth.laws import LawFailure
-from ..smooth.passage import LawPassage, Passed
-from ..smooth.steps import Steps
+from ..smooth.passage import LawPassage, Passed, Steps
 from ..smooth.system import OutputTimes
 from .system import CoupledSystem
 
@@ -122,12 +119,3 @@ class CoupledPassage(LawPassage):
         own, forced = some.modal_rows(some.reached(h, theta), look.order, h)
         rise = (theta - 0.5) * some.seen if look.order == 2 else np.zeros_like(some.seen)
         return own, np.concatenate([forced.sum(axis=1), rise], axis=1)
-
-    def _failed(self, when: float, residual: float, failure: Any) -> Any:
-        if failure is not None:
-            return LawFailure(*failure).told(self.system.laws)
-        names = ", ".join(dict.fromkeys(law.name for law in self.system.laws))
-        return SolveError(
-            f"what couples modes, {names or 'the tension'}, does not converge at t = {when!r} s: "
-            f"the residual is {residual:.3g}"
-        )

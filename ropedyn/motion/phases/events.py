@@ -15,7 +15,7 @@ from ...base.errors import SceneError, SolveError
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ..history import History
-from ..mesh_error import against_spans
+from ..moved import against_spans
 from ..request import TOLERANCE, Run
 from .components import Look, moving_components, rest, why_not_events
 from .energy import balance

@@ -39,6 +39,10 @@ def nodes(stages: int) -> Real:
     return np.asarray(node)
 
 
+# Of forces at the stages, what Legendre's polynomial of the highest degree has in them.
+HIGHEST = np.linalg.inv(np.polynomial.legendre.legvander(2 * nodes(STAGES) - 1, STAGES - 1))[-1]
+
+
 @lru_cache(maxsize=64)
 def gauss(count: int) -> tuple[Real, Real]:
     """Return Gauss's nodes on (-1, 1) and their weights."""
@@ -162,6 +166,6 @@ def tables(modes: Oscillating, h: float, before: float) -> Tables:
             state, forced = modes.rows(reached, order, h)
             seen[:, :, :, i, order] = state.transpose(1, 2, 3, 0)
             own[i, order] = forced
-    return Tables(
-        h, node, reached.change, reached.pushed, seen, own, lagrange(1 + node * h / before)
-    )
+    # forces of a step are no guess of what comes much later
+    ahead = lagrange(1 + np.minimum(node * h / before, 1.0))
+    return Tables(h, node, reached.change, reached.pushed, seen, own, ahead)

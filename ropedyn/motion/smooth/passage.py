@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,13 +11,54 @@ import numpy as np
 from ... import _core
 from ...base.array import Real
 from ...base.errors import SolveError
-from .collocation import STAGES, nodes, tables
+from ..modal.exponentials import is_uniform
+from .collocation import HIGHEST, STAGES, nodes, tables
 from .laws import LawFailure, core_laws
-from .steps import SNAP, Steps, steps_between
 from .system import LawSystem, OutputTimes
 
 BLOCK = 1 << 21  # So many numbers of states are kept at a time,
 ROWS = 4096  # and how so many places within a step are seen.
+SNAP = 1e-9  # Times closer to the end of a step than this part of it are there.
+
+
+class Steps(NamedTuple):
+    """Equal steps one after another."""
+
+    begin: float  # [s]
+    h: float  # [s]
+    number: int
+
+    @property
+    def end(self) -> float:
+        """When the last one ends [s]."""
+        return self.begin + self.h * self.number
+
+    def parts(self, most: int) -> Iterable[Steps]:
+        """Yield them, at most so many at once."""
+        for first in range(0, self.number, most):
+            count = min(most, self.number - first)
+            yield Steps(self.begin + self.h * first, self.h, count)
+
+
+def steps_between(time: Real, breaks: Iterable[float], h: float) -> list[Steps]:
+    """Return steps of at most h from the first time to the last, with breaks at ends of steps."""
+    # where times are even, steps are so many of their intervals or parts of one: then few places
+    # within steps are looked at
+    if is_uniform(time):
+        dt = float(time[-1] - time[0]) / (len(time) - 1)
+        h = dt * math.floor(h / dt * (1 + SNAP)) if h >= dt else dt / math.ceil(dt / h)
+    inside = [at for at in breaks if time[0] < at < time[-1]]
+    edges = np.unique([float(time[0]), *inside, float(time[-1])])
+    near = SNAP * h
+    found: list[Steps] = []
+    for begin, end in zip(edges[:-1].tolist(), edges[1:].tolist()):
+        count = math.floor((end - begin) / h * (1 + SNAP))
+        left = end - begin - count * h
+        if count:
+            found.append(Steps(begin, h, count))
+        if left > near or not count:
+            found.append(Steps(end - left, left, 1))
+    return found
 
 
 class Passed(NamedTuple):
@@ -28,6 +69,7 @@ class Passed(NamedTuple):
     stages: int
     error: BaseException | None = None  # what ended it early
     settles: bool = True  # whether Newton's method found the forces
+    bent: Real = np.zeros(0)  # the highest degree of laws' forces in steps, relative, (laws,)
 
 
 class LawPassage:
@@ -47,7 +89,7 @@ class LawPassage:
         laws = core_laws(system.laws, system.time, size)
         points = system.modes.some(system.points, system.points)
         force, state = np.zeros((STAGES, n)), np.zeros((n, 2, k))
-        done, before, table = 0, math.nan, None
+        done, before, table, bent = 0, math.nan, None, np.zeros(n)
         for block in self._blocks(max(BLOCK // (2 * n * k), 1)):
             if table is None or block.h != before:
                 table = tables(points, block.h, before if done else block.h)
@@ -56,11 +98,13 @@ class LawPassage:
             found = _core.collocate(table, laws, begin, now, force, state, size)
             forces, motions, _, (size,), made, _, residual, failure = found
             done, before = done + made, block.h
+            highest = np.abs(np.tensordot(HIGHEST, forces[1:], (0, 1)))
+            bent = np.maximum(bent, highest.max(axis=0, initial=0.0))
             is_last = made == block.number and done == len(known)
             self._look(block._replace(number=made), forces[1:], motions, is_last)
             reached = block.begin + made * block.h
             if made < block.number:
-                error = self._error(failure, reached, residual)
+                error = self._failed(reached, residual, failure)
                 settles = failure is not None
                 return Passed(self.looked, reached, done * STAGES, error, settles)
             force, state = forces[-1], motions[-1]
@@ -68,7 +112,8 @@ class LawPassage:
                 progress(done / len(known))
             except KeyboardInterrupt as error:
                 return Passed(self.looked, reached, done * STAGES, error)
-        return Passed(self.looked, float(system.time[-1]), done * STAGES)
+        bent /= np.maximum(size[2], np.finfo(float).tiny)
+        return Passed(self.looked, float(system.time[-1]), done * STAGES, bent=bent)
 
     def _blocks(self, most: int) -> Iterator[Steps]:
         for whole in self.all_steps:
@@ -86,13 +131,14 @@ class LawPassage:
         value = np.stack(both).reshape(2, len(both[0]), -1, STAGES)
         return np.ascontiguousarray(value.transpose(2, 3, 0, 1))
 
-    def _error(self, failure: tuple[Any, ...] | None, when: float, residual: float) -> Any:
+    def _failed(self, when: float, residual: float, failure: tuple[Any, ...] | None) -> Any:
+        """Return why a step has no forces."""
         if failure is not None:
             return LawFailure(*failure).told(self.system.laws)
-        names = ", ".join(dict.fromkeys(law.name for law in self.system.laws if law.call))
+        names = ", ".join(dict.fromkeys(law.name for law in self.system.laws))
         return SolveError(
-            f"the law of {names or 'a dashpot'} does not converge at t = {when!r} s: the residual "
-            f"is {residual:.3g} of the forces; laws without jumps do, in steps short enough"
+            f"the force of {names or 'the tension'} does not converge at t = {when!r} s: the "
+            f"residual is {residual:.3g} of the forces; laws without jumps do, in short steps"
         )
 
     # --- what is looked at ----------------------------------------------------------------------

@@ -28,7 +28,7 @@ from ..coupled.steps import CoupledPassage
 from ..coupled.system import CoupledSystem, moving_together, refuse_points, tension_of
 from ..history import History, ended_by
 from ..linear import solve_linear
-from ..mesh_error import against_spans
+from ..moved import against_spans
 from ..request import TOLERANCE, Run
 from ..states import LARGEST, without_dashpots
 from ..undamped import losses_of
@@ -40,7 +40,11 @@ from .system import LawQuestion, LawSystem, OutputTimes
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
 MOST_STEPS = 2_000_000  # A run takes so many steps at most,
 HARD = 10  # or so many halvings of steps that do not converge.
-TIMES = 3.0  # The finer of two runs is off by so many times their distance at most.
+TIMES, MORE = 3.0, 12.0  # The finer of two runs is off by so many times their distance at most, or
+# by so many over what half the step divides errors by, where that is little.
+BENDS = 8.0  # Half the step divides the highest degree of smooth forces by as much at least;
+BENT_FALLS = 2.0  # of others it divides errors by so much.
+FORGETS = 4.0  # What runs before were apart counts, this much less with each half of the step.
 NOTHING = 1e-9  # Responses smaller than this part of the largest are rounding.
 ROUNDING = 1e-12  # Of the largest value and of each radian that it turns, what rounding leaves.
 STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answer.
@@ -143,7 +147,8 @@ def agree(
     linear, h, time = system.without_laws(), system.first_step, system.looks[0].time
     span, worst = float(system.time[-1] - system.time[0]), np.inf
     coarse: list[Real] | None = None
-    apart = np.zeros(0)
+    apart: Real | float = np.inf
+    bent = np.zeros(0)
     stages = hard = 0
     while True:
         passed = passage(system, h).through(run.progress)
@@ -161,18 +166,22 @@ def agree(
             passage is CoupledPassage,
         )
         if passed.error is None and coarse is not None:
-            size = scale(looked[0])[:, None]
+            size = np.maximum(scale(looked[0]), NOTHING * scale(linear[0]))[:, None]
             # where velocities turn or contact begins, two runs may agree by chance
-            before = apart / system.falls if apart.size else 0.0
-            apart = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
-            found.step_error = TIMES * np.maximum(apart, before) + rounding(looked[0], time)
+            is_smooth = not (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
+            falls = system.falls if is_smooth else BENT_FALLS
+            before = apart / falls if np.isfinite(falls) else 0.0
+            now = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
+            wrong = max(TIMES, MORE / falls) * np.maximum(now, before)
+            apart = np.maximum(now, np.where(np.isfinite(apart), apart, 0.0) / FORGETS)
+            found.step_error = wrong + rounding(looked[0], time)
             worst = float((found.step_error / size).max(initial=0.0))
             if worst <= tolerance:
                 return found
         hard += not passed.settles
         if passed.error is not None and (passed.settles or hard > HARD):
             return found
-        coarse, h = looked if passed.error is None else None, h / 2
+        coarse, bent, h = looked if passed.error is None else None, passed.bent, h / 2
         if span / h > MOST_STEPS:
             found.error = SolveError(
                 f"tolerance {tolerance:g} needs more than {MOST_STEPS} steps: with "
@@ -201,9 +210,12 @@ def component_motion(
         passed = LawPassage(fewer, found.h).through(run.progress)
         found.stages += passed.stages
         looked = fewer.without_laws()[0] + passed.looked[0]
-        found.truncation = np.abs(looked - found.looked[0]).max(axis=1, initial=0.0)
-        worst = float((found.truncation / scale(found.looked[0])).max(initial=0.0))
-        if passed.error is not None or worst <= tolerance:
+        apart = np.abs(looked - found.looked[0]).max(axis=1, initial=0.0)
+        found.truncation = apart if passed.settles else np.full(len(apart), np.inf)
+        wrong = found.truncation + found.step_error.max(axis=1, initial=0.0)
+        worst = float((wrong / scale(found.looked[0])).max(initial=0.0))
+        found.error = passed.error if passed.settles else None
+        if found.error is not None or worst <= tolerance:
             return found
         if count >= MOST_MODES:
             found.error = SolveError(

@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Real
-from ...base.errors import SolveError
 from ..coupled.system import CoupledSystem
 from .collocation import STAGES, lagrange, nodes
 from .passage import LawPassage, Passed
@@ -48,8 +47,7 @@ class StretchedPassage(LawPassage):
                 solved, residual = step.solve(q, guess, added, size)
                 if solved is None:
                     when = block.begin + i * block.h
-                    told = f"the tension does not converge at t = {when!r} s: the residual is "
-                    error = SolveError(f"{told}{residual:.3g} of the forces")
+                    error = self._failed(when, residual, None)
                     return Passed(self.looked, when, done * STAGES, error, settles=False)
                 forces[i] = force = solved
                 size = max(size, float(np.abs(force).max()))
