@@ -117,9 +117,10 @@ class Run:
         return self.transfer(self.model, drives, responses)
 
     @property
-    def is_shaped(self) -> bool:
-        """Whether motion begins with more than loads that are let go."""
-        return bool(self.kicks) or self.coarse is not None
+    def struck(self) -> Run:
+        """The same with the impulses that begin motion among the forces."""
+        drives, given = (*self.drives, *self.kicks), (*self.forces, *self.blows)
+        return replace(self, drives=drives, forces=given, kicks={})
 
     @property
     def places(self) -> list[Any]:

@@ -18,8 +18,7 @@ from ...scene.tension import Tension
 from ..acting import scene_laws
 from ..request import Run
 from ..states import states, why_coupled, without_dashpots
-from .laws import phase_laws
-from .phase import PhaseSystem, extras
+from .phase import PhaseSystem, extras, phase_laws
 from .pieces import is_chirp
 from .walk import Instant
 
@@ -97,8 +96,8 @@ def rest(one: Moving, nudge: float) -> Instant:
 def why_not_events(run: Run) -> str:
     """Say what phases do not take, with nothing where they take all."""
     model = run.model
-    if run.is_shaped:
-        return "velocity and shapes must be left out"
+    if run.coarse is not None:
+        return "start and velocity must not be functions of x on continuous spans"
     for one in scene_laws(model.scene):
         if not (one.law.kind == "stop" or (one.law.kind == "power" and one.law.value[1] == 0)):
             part = model.scene.parts[one.part]

@@ -19,7 +19,7 @@ from ...response.moved_end import is_end
 from ..history import Balance
 from ..request import Run
 from .components import Look, Moving, moving_components, rest
-from .laws import Contact
+from .phase import Contact
 from .pieces import pieces
 from .walk import PhaseWalk, Visit
 

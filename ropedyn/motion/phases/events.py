@@ -80,6 +80,7 @@ def solve_events(run: Run) -> History:
     why = why_not_events(run)
     if why:
         raise SceneError(f'{why} where the method is "events"')
+    asked, run = run, run.struck
     x = within(run.model.x, POINTS) if run.model.element == "continuous" else run.model.x
     points = tuple((c, float(at)) for at in x for c in run.model.coordinates)
     looks = [Look(run.responses, run.time, run.order)]
@@ -92,14 +93,14 @@ def solve_events(run: Run) -> History:
     width = len(run.model.coordinates)
     kept = found.seen[1] if len(looks) > 1 else np.zeros((len(points), 0))
     history = History(
-        **run.kept.told,
+        **asked.kept.told,
         value=value,
         x=x,
         snapshot=np.ascontiguousarray(kept.T).reshape(-1, len(x), width),
         cost=Cost("events", len(run.model.x) - 1, found.modes),
         balance=partial(balance, run.kept, found.modes),
         error=error,
-        mesh_error=partial(against_spans, run.kept.but(partial=True), value, solve_events),
+        mesh_error=partial(against_spans, asked.kept.but(partial=True), value, solve_events),
         sure_until=sure,
     )
     if math.isinf(sure) or run.partial:

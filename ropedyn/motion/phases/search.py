@@ -4,8 +4,9 @@ Between two looks at h and h' a distance w apart, with |h''| <= M,
 
     h >= min(h_a, h_a + h_a' w/2 - M w^2/8, h_b, h_b - h_b' w/2 - M w^2/8).
 
-Where that is not above zero the interval is divided, so that nothing is overlooked however short it
-is, but for what rounding hides.
+Where that is not above zero, Taylor's polynomial may tell: points that a wave has not reached yet
+move as a high power of the time, long below what rounding leaves. Else the interval is divided, so
+that nothing is overlooked however short it is, but for what rounding hides.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ LOOKS, PARTS = 64, 8  # So many intervals are looked at together, and one is div
 ROUNDING = 64 * np.finfo(float).eps  # Of the sum of the terms' magnitudes.
 BEGUN = 1e-10  # Of the same: an event is rounded to so much, at most.
 DEEPEST = 24  # Divisions after which only rounding is left.
+ORDER = 10  # Of Taylor's polynomials.
 STEPS = 60  # Of a root, at most.
 
 
@@ -48,9 +50,9 @@ def first_crossing(guards: Course, scale: Real, end: float) -> Crossing | None:
         return None
     slope = guards.derivative()
     scale = np.maximum(scale, guards.size(0.0, 0.0))
-    start, rise = (one.at(np.zeros(1))[:, 0] for one in (guards, slope))
-    # what begins a little below zero and rises was zero before rounding
-    begun = (rise > 0) & (start < 0) & (-start < BEGUN * scale)
+    start = guards.at(np.zeros(1))[:, 0]
+    # what begins a little below zero was zero before rounding, and its slope may have been too
+    begun = (start < 0) & (-start < BEGUN * scale)
     floor = np.maximum(ROUNDING * scale, np.where(begun, -2 * start, 0.0))
     g = _Guards(guards, slope, slope.derivative(), floor)
     if (start < -floor).any():
@@ -93,6 +95,8 @@ def _within(g: _Guards, first: float, last: float, parts: int, depth: int) -> Cr
             if below.any():
                 return Crossing(hi, int(np.argmin(h[:, k + 1] + g.floor)))
             continue
+        if not below.any() and _stays(g, lo, width):
+            continue
         certain = _above(h[:, k : k + 2], v[:, k : k + 2], width, bend[:, None])[:, 0] >= -g.floor
         unclear = ~falls & ~certain
         if not unclear.any() and below.any():
@@ -107,6 +111,17 @@ def _within(g: _Guards, first: float, last: float, parts: int, depth: int) -> Cr
 def _safe(g: _Guards, h: Real, v: Real, width: float, bend: Real) -> Flags:
     """Say in which intervals every guard is above zero, shape (parts,)."""
     return np.asarray((_above(h, v, width, bend[:, None]) >= -g.floor[:, None]).all(axis=0))
+
+
+def _stays(g: _Guards, first: float, width: float) -> bool:
+    """Say whether Taylor's polynomials and what they leave out are above zero in an interval."""
+    course, when = g.value, np.array([first])
+    power, least, share = course.powers(when), np.zeros(len(g.floor)), 1.0
+    for order in range(ORDER):
+        value = course.on(power, when)[:, 0]
+        least = least + share * (np.minimum(value, 0.0) if order else value)
+        course, share = course.derivative(), share * width / (order + 1)
+    return bool((least - share * course.size(first, first + width) >= -g.floor).all())
 
 
 def _above(h: Real, v: Real, width: float, bend: Real) -> Real:
