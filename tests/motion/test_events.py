@@ -308,6 +308,13 @@ def test_motion_known_for_a_part_of_the_time_is_refused_with_that_time():
     np.testing.assert_array_equal(history.value, refused.value.history.value)
 
 
+@pytest.mark.parametrize("part", [rd.Stop(0.5, 1e4, gap=1e-3), rd.Dashpot(0.5, 1.0, exponent=0.0)])
+def test_numbers_that_overflow_are_refused(part):
+    model, time = rope(part).compile(elements=4), np.linspace(0.0, 0.1, 11)
+    with pytest.raises(rd.SolveError, match="numbers overflow: check the units and the times"):
+        model.transient(time, drive=("z", 0.25), force=np.full(11, 1e308))
+
+
 @pytest.mark.long
 def test_chaos_says_until_when_it_is_known():
     """Two stiff stops without damping: rounding is the motion after a while."""

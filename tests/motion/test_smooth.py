@@ -179,6 +179,11 @@ def test_snapshots_are_the_motion_of_the_nodes():
     assert history.snapshot[:, 3, 0] == pytest.approx(history.value[0, at], rel=1e-12)
 
 
+def test_times_that_take_too_many_steps_are_refused_before_the_first():
+    with pytest.raises(rd.SolveError, match=r"1e\+06 s take 5\.7e\+07 steps at least, above 2000"):
+        released(mass_on_a_string(hardening()), np.linspace(0.0, 1e6, 11))
+
+
 def test_law_that_jumps_is_refused_where_it_holds_what_moves():
     law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -math.copysign(1.0, v))
     with pytest.raises(rd.SolveError, match=r"parts\[0\] does not converge at t = .* residual"):

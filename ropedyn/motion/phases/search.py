@@ -4,9 +4,9 @@ Between two looks at h and h' a distance w apart, with |h''| <= M,
 
     h >= min(h_a, h_a + h_a' w/2 - M w^2/8, h_b, h_b - h_b' w/2 - M w^2/8).
 
-Where that is not above zero, Taylor's polynomial may tell: points that a wave has not reached yet
-move as a high power of the time, long below what rounding leaves. Else the interval is divided, so
-that nothing is overlooked however short it is, but for what rounding hides.
+Where that is not above zero Taylor's polynomials may tell: what no wave has reached moves as a high
+power of time, below rounding. Else the interval is divided, so that nothing is overlooked however
+short it is, but for what rounding hides.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Flags, Real
+from ...base.errors import SolveError
 from .course import Course
 
 LOOKS, PARTS = 64, 8  # So many intervals are looked at together, and one is divided into so many.
@@ -41,6 +42,7 @@ class _Guards(NamedTuple):
     floor: Real  # (guards,) what rounding cannot tell from 0
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def first_crossing(guards: Course, scale: Real, end: float) -> Crossing | None:
     """Return the first time before the end at which a guard falls below zero, from 0 on.
 
@@ -51,6 +53,8 @@ def first_crossing(guards: Course, scale: Real, end: float) -> Crossing | None:
     slope = guards.derivative()
     scale = np.maximum(scale, guards.size(0.0, 0.0))
     start = guards.at(np.zeros(1))[:, 0]
+    if not np.isfinite([start, scale, slope.derivative().size(0.0, 0.0)]).all():
+        raise SolveError("the numbers overflow: check the units and the times")
     # what begins a little below zero was zero before rounding, and its slope may have been too
     begun = (start < 0) & (-start < BEGUN * scale)
     floor = np.maximum(ROUNDING * scale, np.where(begun, -2 * start, 0.0))
@@ -69,8 +73,7 @@ def first_crossing(guards: Course, scale: Real, end: float) -> Crossing | None:
 
 def _reach(g: _Guards, first: float, end: float) -> tuple[float, int]:
     """Return up to where looks tell the most, and how many it takes."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        size, bend = g.value.size(first, first), g.bend.size(first, first)
+    size, bend = g.value.size(first, first), g.bend.size(first, first)
     share = np.divide(size, bend, out=np.full(len(size), np.inf), where=bend > 0)
     width = float(np.sqrt(0.2 * share.min(initial=np.inf)))
     if not first + width > first:

@@ -125,9 +125,7 @@ class PhaseWalk:
                 law = self._law(mode, event.which)
                 crowd = 0 if last > INSTANT * self.system.span else crowd + 1
                 if crowd > AT_ONCE:
-                    raise SolveError(
-                        f"stops and friction find no phase that lasts at t = {time:g} s"
-                    )
+                    raise SolveError(f"stops and friction find no lasting phase at t = {time:g} s")
                 time, forcing = time + last, _later(forcing, last)
                 self.events.append((time, law))
                 now, mode = self._changed(

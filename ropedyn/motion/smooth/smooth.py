@@ -147,9 +147,10 @@ def agree(
     linear, h, time = system.without_laws(), system.first_step, system.looks[0].time
     span, worst = float(system.time[-1] - system.time[0]), np.inf
     coarse: list[Real] | None = None
-    apart: Real | float = np.inf
-    bent = np.zeros(0)
+    apart, bent = np.full(1, np.inf), np.zeros(0)
     stages = hard = 0
+    if span / h > MOST_STEPS:
+        raise SolveError(f"{span:g} s take {span / h:.2g} steps at least, above {MOST_STEPS}")
     while True:
         passed = passage(system, h).through(run.progress)
         stages += passed.stages
@@ -168,8 +169,8 @@ def agree(
         if passed.error is None and coarse is not None:
             size = np.maximum(scale(looked[0]), NOTHING * scale(linear[0]))[:, None]
             # where velocities turn or contact begins, two runs may agree by chance
-            is_smooth = not (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
-            falls = system.falls if is_smooth else BENT_FALLS
+            bends = (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
+            falls = BENT_FALLS if bends else system.falls
             before = apart / falls if np.isfinite(falls) else 0.0
             now = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
             wrong = max(TIMES, MORE / falls) * np.maximum(now, before)
