@@ -64,8 +64,8 @@ def test_hardening_spring_is_duffings_within_the_error_it_says(tolerance, claim)
 
 
 @pytest.mark.claim(
-    "A spring on one side by collocation, accelerations on 40 grids of times: share of those with a "
-    "sample that is off by more than is said",
+    "A spring on one side by collocation, accelerations on 40 grids of times: share of those with "
+    "a sample that is off by more than is said",
     reference="half periods of two cosines in turn",
     accepted=0.025,
 )
