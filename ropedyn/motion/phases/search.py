@@ -50,15 +50,15 @@ def first_crossing(guards: Course, scale: Real, end: float) -> Crossing | None:
     """
     if not len(guards.c):
         return None
-    slope = guards.derivative()
+    slope, start = guards.derivative(), guards.at(np.zeros(1))[:, 0]
+    bend = slope.derivative()
     scale = np.maximum(scale, guards.size(0.0, 0.0))
-    start = guards.at(np.zeros(1))[:, 0]
-    if not np.isfinite([start, scale, slope.derivative().size(0.0, 0.0)]).all():
+    if not np.isfinite([start, scale, bend.size(0.0, 0.0)]).all():
         raise SolveError("the numbers overflow: check the units and the times")
     # what begins a little below zero was zero before rounding, and its slope may have been too
     begun = (start < 0) & (-start < BEGUN * scale)
     floor = np.maximum(ROUNDING * scale, np.where(begun, -2 * start, 0.0))
-    g = _Guards(guards, slope, slope.derivative(), floor)
+    g = _Guards(guards, slope, bend, floor)
     if (start < -floor).any():
         return Crossing(0.0, int(np.argmin(start + floor)))
     first = 0.0

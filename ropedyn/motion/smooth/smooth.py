@@ -212,7 +212,7 @@ def component_motion(
         found.stages += passed.stages
         looked = fewer.without_laws()[0] + passed.looked[0]
         apart = np.abs(looked - found.looked[0]).max(axis=1, initial=0.0)
-        found.truncation = apart if passed.settles else np.full(len(apart), np.inf)
+        found.truncation = apart if passed.error is None else np.full(len(apart), np.inf)
         wrong = found.truncation + found.step_error.max(axis=1, initial=0.0)
         worst = float((wrong / scale(found.looked[0])).max(initial=0.0))
         found.error = passed.error if passed.settles else None
