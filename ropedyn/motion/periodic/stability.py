@@ -126,11 +126,11 @@ class _Strip:
 
     def _some(self, nu: Real) -> tuple[Complex, Real]:
         m, n = self.balance.points, len(self.k)
-        H = self.balance.transfer.at(nu[:, None] + self.k * self.omega)[..., :m, :-1]
+        omega = nu[:, None] + self.k * self.omega
+        H = self.balance.transfer.at(omega)[..., :m, :-1]
         moved: Complex = H @ self.stiff
         if self.drag is not None:
-            rate = 1j * (nu[:, None] + self.k * self.omega)
-            moved += (H @ self.drag) * np.repeat(rate, m, axis=1)[:, None, None]
+            moved += (H @ self.drag) * np.repeat(1j * omega, m, axis=1)[:, None, None]
         matrix = np.eye(n * m) - moved.reshape(len(nu), n * m, n * m)
         sign, size = np.linalg.slogdet(matrix)
         return np.where(sign == 0, 1.0, sign), size
