@@ -5,8 +5,8 @@
 u of the laws' points, S what steps of force move them. `linear` and S are linear motion, by modes
 or by the line: any damping, continuous spans, structures, moved ends. In each step the forces are
 constant and a law sees the means of the step (csrc/volterra), so that friction holds without
-creeping. The forces, as straight lines through them, then drive the linear model. Runs with steps
-half as long tell the error.
+creeping. The forces, as straight lines through them, then drive the linear model. Three runs tell
+the error, each with steps half as long as the one before.
 """
 
 from __future__ import annotations
@@ -41,10 +41,12 @@ from .request import TOLERANCE, Run
 from .smooth.laws import LawFailure, SmoothLaw
 from .smooth.smooth import scale
 
-FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, at first at least and at most.
+FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, of a second run at least and at most.
 SHARPER = 0.05  # Linear motion is known to this part of the tolerance, if it can be,
 SHAPED = 0.25  # from shapes and velocities to this.
-TIMES = 2.0  # A run is off by so many times its distance to one with steps twice as long.
+TIMES = 2.0  # A run is off by so many times its distance to one with steps twice as long, or what
+FALLS = 2.0  # that run was off over this.
+FORGETS = 4.0  # What runs before were apart counts, this much less with each half of the step.
 BLOCK = 2048  # So many steps are taken at a time.
 STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answer.
 NONE = np.zeros(0)
@@ -211,7 +213,7 @@ def _ended(run: Run, ended: Ended) -> History:
 
 def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
     """Halve the steps until two runs agree within the tolerance."""
-    count, before, apart = _first(run), None, None
+    count, before, apart = _first(run), None, np.inf
     laws = CoreActing.of(run.model)
     while True:
         stepped = Stepped(run, laws, count, tolerance)
@@ -220,33 +222,34 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
         except Ended as ended:
             if not isinstance(ended.error, Unsettled) or 2 * count > MOST_STEPS:
                 raise
-            count, before, apart = 2 * count, None, None
+            count, before, apart = 2 * count, None, np.inf
             continue
         if before is not None:
             now = np.maximum.accumulate(np.abs(found.value - before.value), axis=1)
-            # where velocities turn, runs may agree by chance
-            apart = now if apart is None else np.maximum(now, apart / 2)
-            known = found._replace(error=found.error + TIMES * apart)
+            # where velocities turn, two runs may agree by chance
+            wrong, seen = (TIMES * d for d in (np.maximum(now, apart / FALLS), now))
+            known = found._replace(error=found.error + wrong)
             most = tolerance * scale(found.value)[:, None]
-            late = known.error > most
-            if not late.any():
+            if (known.error <= most).all():
                 return stepped, known
             # shorter steps do not help where linear motion is not known
             if 2 * count > MOST_STEPS or (np.minimum(found.error, before.error) > most).any():
-                raise _unknown(run, tolerance, count, late, known)
+                raise _unknown(run, tolerance, count, found._replace(error=found.error + seen))
+            apart = np.maximum(now, np.where(np.isfinite(apart), apart / FORGETS, 0.0))
         count, before = 2 * count, found
 
 
 def _first(run: Run) -> int:
-    """Return how many steps are taken at first: so many in each of even times."""
+    """Return how many steps a first run takes: the second as many in each of even times."""
     times = len(run.time) - 1
     highest = max((force.highest for force in run.forces), default=0.0)
     least = max(FIRST, 4 * math.ceil(highest * float(run.time[-1] - run.time[0])))
-    return times * -(-least // times) if is_even(run.time) else max(least, times)
+    return -(-times * -(-least // times) // 2) if is_even(run.time) else max(least, times) // 2
 
 
-def _unknown(run: Run, tolerance: float, count: int, late: Any, known: Moved) -> SolveError:
-    until = float(run.time[max(int(late.any(axis=0).argmax()) - 1, 0)])
+def _unknown(run: Run, tolerance: float, count: int, known: Moved) -> SolveError:
+    late = (known.error > tolerance * scale(known.value)[:, None]).any(axis=0)
+    until = float(run.time[max(int(late.argmax()) - 1, 0)])
     return SolveError(
         f"the motion is known to {tolerance:g} of its largest value until t = {until:.4g} s only: "
         f"with {count} steps the error grows to {known.shares().max():.1e}. A larger tolerance or "
