@@ -137,6 +137,8 @@ PyObject *py_space_iterate(PyObject *module, PyObject *arguments);
 PyObject *py_recurrence(PyObject *module, PyObject *arguments);
 PyObject *py_eliminate(PyObject *module, PyObject *arguments);
 PyObject *py_substitute(PyObject *module, PyObject *arguments);
+PyObject *py_balance(PyObject *module, PyObject *arguments);
+PyObject *py_stopped(PyObject *module, PyObject *arguments);
 PyObject *py_collocate(PyObject *module, PyObject *arguments);
 PyObject *py_volterra(PyObject *module, PyObject *arguments);
 PyObject *py_modal_steps(PyObject *module, PyObject *arguments);

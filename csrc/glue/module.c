@@ -73,6 +73,9 @@ static PyMethodDef methods[] = {
      "carried_pair_slopes(chain, factor, field, pair, slip) -> numbers, rows of structures"},
     {"sensitivity", py_sensitivity, METH_VARARGS,
      "sensitivity(chain, shape, motion, eigenvalue) -> slopes, squared jumps, dyads, places"},
+    {"balance", py_balance, METH_VARARGS, "balance(transfer, by_u, by_v, omega) -> jacobians"},
+    {"stopped", py_stopped, METH_VARARGS,
+     "stopped(stiffness, gap, side, step, u, v) -> force, by_u, by_v over periods"},
     {"collocate", py_collocate, METH_VARARGS,
      "collocate(step, laws, begin, known, force, state, size) -> force, state, motion, size, steps "
      "made, iterations, residual, failure"},

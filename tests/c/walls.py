@@ -22,6 +22,7 @@ FLOORS = [
     "energy",
     "assembled",
     "mixed",
+    "balance",
     "law",
     "collocation",
     "volterra",

@@ -53,6 +53,15 @@ STEPPED = (
     np.ones((3, 2, 8)),
     np.ones((2, 8)),
 )
+# two motions of one point and its drive, harmonics up to 1, spare coefficients
+BALANCED = (
+    np.full((2, 2, 1, 2), 0.5 + 0.1j),
+    np.full((2, 1, 1, 4), 0.2 + 0j),
+    np.full((2, 1, 1, 4), 0.1 + 0j),
+    np.array([1.0, 2.0]),
+)
+# two motions between two samples
+STRUCK = (2.0, 0.1, 1.0, np.array([0.1, 0.2]), np.full((2, 2), 0.3), np.full((2, 2), 0.4))
 # a step of two stages of one law in Python and one in the core, three modes, no forces before it
 COLLOCATED = (
     (
@@ -227,6 +236,8 @@ OTHERS = {
     "invert": lambda _: _core.invert(MATRIX),
     "modal_steps": lambda _: coupled()[:-1],
     "recurrence": lambda _: _core.recurrence(*STEPPED),
+    "balance": lambda _: _core.balance(*BALANCED),
+    "stopped": lambda _: _core.stopped(*STRUCK),
     "volterra": lambda _: _core.volterra(
         *VOLTERRA, np.zeros((2, 2)), np.zeros((2, 3)), np.zeros(2), 0, 2
     )[:-1],
@@ -774,6 +785,36 @@ REFUSED = {
         lambda: _core.volterra(*VOLTERRA, np.zeros((2, 2)), np.zeros((2, 3)), np.zeros(2), 0, 3),
         ValueError,
         r"steps must lie in 0 \.\.\. 2, got 0 to 3",
+    ),
+    "harmonics of no point": (
+        lambda: _core.balance(BALANCED[0][:, :, :0], *BALANCED[1:]),
+        ValueError,
+        "transfer must hold harmonics of points by points and more, got 2 of 0 by 2",
+    ),
+    "too few coefficients": (
+        lambda: _core.balance(BALANCED[0], BALANCED[1][..., :2], *BALANCED[2:]),
+        ValueError,
+        "by_u must hold 3 coefficients at least, got 2",
+    ),
+    "slopes of other motions": (
+        lambda: _core.balance(*BALANCED[:2], BALANCED[2][:1], BALANCED[3]),
+        ValueError,
+        "by_v must have 2 entries along axis 0, got 1",
+    ),
+    "frequencies of other motions": (
+        lambda: _core.balance(*BALANCED[:3], BALANCED[3][1:]),
+        ValueError,
+        "omega must have 2 entries along axis 0, got 1",
+    ),
+    "a period of no sample": (
+        lambda: _core.stopped(*STRUCK[:4], STRUCK[4][:, :0], STRUCK[5]),
+        ValueError,
+        "u must hold a sample at least, got none",
+    ),
+    "velocities of other samples": (
+        lambda: _core.stopped(*STRUCK[:5], STRUCK[5][:, :1]),
+        ValueError,
+        "v must have 2 entries along axis 1, got 1",
     ),
     "modes that do not fill the lanes": (
         lambda: _core.recurrence(STEPPED[0][:, :, 1:], *STEPPED[1:]),

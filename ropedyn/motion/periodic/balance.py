@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.array import Complex, Index, Real
+from ... import _core
+from ...base.array import Complex, Real
 from ...base.computed import computed
 from .laws import Felt, PointForces
 from .transfer import PanelledTransfer
@@ -48,12 +49,6 @@ class HarmonicBalance:
     def order(self) -> Real:
         """The harmonics 0..K."""
         return np.arange(self.harmonics + 1.0)
-
-    @computed
-    def pairs(self) -> Index:
-        """Where k - l is among the harmonics -2K..2K, (K + 1, 2K + 1) for l = -K..K."""
-        across = np.arange(-self.harmonics, self.harmonics + 1)
-        return np.arange(self.harmonics + 1)[:, None] - across + 2 * self.harmonics
 
     def complex(self, x: Real) -> Complex:
         """Return the harmonics, (points, K + 1), of the unknowns."""
@@ -110,32 +105,19 @@ class HarmonicBalance:
             turned = np.einsum("...pjn,...jn->...pn", felt.by_v, v / rate[..., None])
             by_omega -= _on(H[..., :-1], self.coefficients(turned))
         by_share = -H[..., -1].swapaxes(-1, -2) * self.driven()
-        linear = Linear(self.real(gap), self._jacobian(H, felt, rate), self.real(by_omega))
+        linear = Linear(self.real(gap), self._jacobian(H, felt, omega), self.real(by_omega))
         return linear, self.real(by_share)
 
-    def _jacobian(self, H: Complex, felt: Felt, rate: Real) -> Real:
-        """Return I - H (r_u + r_v i l omega)^ for real unknowns."""
-        K, m = self.harmonics, self.points
-        stiff = self._toeplitz(felt.by_u)
-        if felt.by_v.any():
-            turn = 1j * (rate * np.arange(-K, K + 1))[..., None, None, None, :]
-            stiff += self._toeplitz(felt.by_v) * turn
-        several = stiff.shape[:-4]
-        # (k, i, p) (k, p, j l)
-        stiff = np.moveaxis(stiff, -2, -4).reshape(*several, K + 1, m, -1)
-        moved = (H[..., :-1] @ stiff).reshape(*several, K + 1, m, m, 2 * K + 1).swapaxes(-4, -3)
-        ahead, behind = moved[..., K:], moved[..., K::-1]
-        both = np.concatenate([ahead + behind, 1j * (ahead - behind)[..., 1:]], axis=-1)
-        both[..., 0] = ahead[..., 0]
-        rows = np.concatenate([both.real, both.imag[..., 1:, :, :]], axis=-3)
-        n = m * (2 * K + 1)
-        return np.eye(n) - rows.reshape(*several, n, n)
-
-    def _toeplitz(self, slope: Real) -> Complex:
-        """Return the coefficients k - l of slopes, (points, points, K + 1, 2K + 1)."""
-        ahead = np.fft.rfft(slope, norm="forward")[..., : 2 * self.harmonics + 1]
-        every = np.concatenate([ahead[..., :0:-1].conj(), ahead], axis=-1)
-        return np.asarray(every[..., self.pairs])
+    def _jacobian(self, H: Complex, felt: Felt, omega: Real | float) -> Real:
+        """Return the slope of what is not balanced by the unknowns."""
+        m, order = self.points, 2 * self.harmonics + 1
+        by_u, by_v = (
+            np.fft.rfft(one, norm="forward").reshape(-1, m, m, self.samples // 2 + 1)
+            for one in (felt.by_u, felt.by_v)
+        )
+        rate, turns = np.array(omega, dtype=np.float64).ravel(), felt.by_v.any()
+        found = _core.balance(H.reshape(-1, *H.shape[-3:]), by_u, by_v if turns else None, rate)
+        return found.reshape(*np.shape(omega), m * order, m * order)
 
 
 def _on(H: Complex, push: Complex) -> Complex:

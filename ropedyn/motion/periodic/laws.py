@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from ... import _core
 from ...base import check
 from ...base.array import Real
 from ...base.errors import SolveError
@@ -101,16 +102,10 @@ def _stop(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:
     a changes by 2 w meanwhile. So the force has a slope when contact begins at one more sample.
     """
     k, gap, side = one.law.value
-    step = time[..., 1:2] - time[..., :1]
-    # where v passes 0 it is the acceleration that moves
-    last = np.abs(v[..., 0] - v[..., -1])
-    turns = np.maximum(np.abs(v[..., 1:] - v[..., :-1]).max(axis=-1), last)[..., None] / 4
-    passing = np.maximum(np.hypot(v, turns), TINY)
-    a, w = side * u - gap, np.maximum(passing * (step / 2), TINY)
-    share = np.minimum(np.maximum((a + w) / (2 * w), 0.0), 1.0)
-    deep = np.where(share < 1, share * share * w, a)
-    by_v = share * (1 - share) * (v / passing) * (-side * k * step / 2)
-    return -side * k * deep, -k * share, by_v
+    step = (time[..., 1] - time[..., 0]).reshape(-1)
+    u, v = (moves.reshape(-1, moves.shape[-1]) for moves in (u, v))
+    force, by_u, by_v = _core.stopped(k, gap, side, step, u, v).reshape(3, *time.shape)
+    return force, by_u, by_v
 
 
 def _call(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:
