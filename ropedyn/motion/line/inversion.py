@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,7 @@ from ..request import Run
 from .at_once import LOOKS, at_once, at_once_by, response
 from .force_transform import transform
 from .grid import LEAST, Grid, off
+from .images import ringing
 from .transfer import TransferFunctions
 
 SHARES = (0.5, 0.7, 0.85)  # Sums that end at this part of the rates tell the error,
@@ -122,7 +124,7 @@ class Line:
         alias = ALIAS * self.grid.decay * later
         # modes beyond the rates, where none is near their end, are seen by what they do there
         last = np.median(np.abs(smooth[:, -(grid.lines // LAST) :]), axis=1)
-        alias += grid.omega / math.pi * last + self._unseen()
+        alias += grid.omega / math.pi * last + self._unseen() + TIMES * self._images()
         error = TIMES * differ + alias[:, None] + self._at_jumps(fast)
         return Moved(value, error, "line", lines=grid.lines)
 
@@ -208,6 +210,15 @@ class Line:
             bound += excited * omega**-2.0 * np.sqrt(light * watched)
         return bound
 
+    def _images(self) -> Real:
+        """Return what corners between samples ring beyond the rates, (responses,)."""
+        found = np.zeros(len(self.run.responses))
+        for d, one in enumerate(self.forces):
+            if is_sampled(one):
+                rest = partial(_rest, self.transfer, self._smooth[0], d)
+                found += ringing(one, self.grid, self.run.order, rest)
+        return found
+
     def _light(self, drive: Any, response: Any) -> float:
         """Bound the sum of the residues of modes beyond the rates where a point is driven."""
         # s^2 H is the sum of r s^2/(s^2 + omega^2): all r far out, less x/(1 + x) of each nearer,
@@ -292,6 +303,11 @@ class Line:
         ends = np.exp(-36 * np.linspace(0.0, 1.0, twice.lines + 1) ** SHARP)
         after = np.abs(twice.finely(line._smooth[2] * ends))[:, twice.lines :]
         return np.maximum(most, after.max(axis=1))
+
+
+def _rest(transfer: TransferFunctions, fast: Expansion, drive: int, s: Complex) -> Complex:
+    """Return what a drive moves but for what is there at once, (responses, n)."""
+    return np.asarray(transfer.at(s)[drive] - response(fast, s)[drive])
 
 
 def _moves(point: Point) -> bool:

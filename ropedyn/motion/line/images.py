@@ -1,0 +1,59 @@
+"""What corners between samples of a force ring beyond the rates that are looked at.
+
+Of straight lines between samples in even steps h, s^2 f(s) repeats with 2 pi/h: a slow force has
+images on both sides of every multiple of it, where a mode may ring. The strongest of them are
+followed on a line so near the resonances that what they make is not lost in what grows with it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ...base.array import Complex, Real
+from ...scene.force import Force, Samples, Sum
+from .force_transform import transform
+from .grid import Grid
+
+STRONGEST = 96  # So many rates of a force have images that are followed,
+TURNS = 2  # beside so many multiples.
+SEEN = 0.7  # Rates below this part of the highest are summed in full.
+ALIAS = 0.05  # What is left of motion a period later.
+
+
+def sample_step(force: Force) -> float:
+    """Return the step of a force's samples on average, infinite where it has none [s]."""
+    if isinstance(force, Sum):
+        return min(map(sample_step, force.forces))
+    if not isinstance(force, Samples):
+        return math.inf
+    return float(force.time[-1] - force.time[0]) / (len(force.time) - 1)
+
+
+def ringing(force: Force, grid: Grid, order: int, follow: Callable[[Complex], Complex]) -> Real:
+    """Return how large a derivative of the images' motion becomes, (responses,).
+
+    `follow` says what the force moves beyond the rates, (responses, n).
+    """
+    near = replace(grid, finer=1, a=grid.a + math.log(grid.decay / ALIAS) / grid.period)
+    s = near.s[1:]
+    repeated = transform(force, near)[1:] * s * s
+    size = np.abs(repeated) ** 2
+    strong = np.sort(size.argsort()[-STRONGEST:])
+    turn = 2 * math.pi / sample_step(force)
+    first = max(1, math.floor(SEEN * grid.omega / turn))
+    turns = turn * np.arange(first, first + TURNS)
+    # below and above each multiple: images of -s and s
+    at = near.a + 1j * (turns[:, None, None] + np.outer((-1, 1), s[strong].imag))
+    moves = follow(at.ravel()).reshape(-1, *at.shape)
+    moves *= at ** (order - 2) * (at.imag > SEEN * grid.omega)
+    spectrum = np.zeros((len(moves), len(near.s)), dtype=np.complex128)
+    both = moves[:, :, 0].conj() + moves[:, :, 1]
+    spectrum[:, strong + 1] = both.sum(axis=1) * repeated[strong]
+    motion = near.finely(spectrum)[:, : grid.steps + 1]
+    # what is not followed comes on top, as noise does
+    share = size[strong].sum() / max(float(size.sum()), np.finfo(float).tiny)
+    return np.asarray(np.abs(motion).max(axis=1) / math.sqrt(share or 1.0))
