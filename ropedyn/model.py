@@ -353,7 +353,8 @@ class Model(Compiled):
             Static loads [N, N m] that are let go at the first time, at the mean tension and without
             what is not linear; or the shape, a function of x [m] for z, or {coordinate: function}.
         velocity : mapping from points to float, or function, optional
-            Impulses at the first time [N s, N m s], or the velocity as `start` gives the shape.
+            Impulses at the first time [N s, N m s], or the velocity as `start` gives the shape,
+            of what supports do not hold.
         method : {"auto", "modal", "line", "events"}
             ``"modal"``: the sum over modes, each exact, where damping does not couple them.
             ``"line"``: exact transfer functions inverted, for any damping. ``"events"``: stops and

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -81,6 +81,8 @@ class Run:
         t = checked_times(time)
         drives, given = _driven(model, kind, drive, force, t)
         loads, kicks = kind.released(model, start), kind.kicked(model, velocity)
+        for name, begun in (("start", loads), ("velocity", kicks)):
+            _refuse_held(model, kind, begun.given, name)
         run = cls(
             model,
             t,
@@ -220,10 +222,15 @@ def _driven(
     if drive is None:
         return (), ()
     drives, several = kind.driven(model, drive)
-    for point in drives:
-        if not is_end(point) and kind.holds(model, point):
-            raise SceneError(f"drive must be free to move, got {point}, which a support holds")
+    _refuse_held(model, kind, (point for point in drives if not is_end(point)), "drive")
     return drives, _acting_forces(drives, force, time, several=several)
+
+
+def _refuse_held(model: Any, kind: Kind, places: Iterable[Point], name: str) -> None:
+    """Refuse to push what a support holds."""
+    for point in places:
+        if kind.holds(model, point):
+            raise SceneError(f"{name} must be free to move, got {point}, which a support holds")
 
 
 def _acting_forces(

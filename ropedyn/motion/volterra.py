@@ -213,7 +213,8 @@ def _ended(run: Run, ended: Ended) -> History:
 
 def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
     """Halve the steps until two runs agree within the tolerance."""
-    count, before, apart = _first(run), None, np.inf
+    count, before = _first(run), None
+    apart: Real | float = np.inf
     laws = CoreActing.of(run.model)
     while True:
         stepped = Stepped(run, laws, count, tolerance)
