@@ -18,8 +18,8 @@ from ...scene.force import Force, Samples, Sum
 from .force_transform import transform
 from .grid import Grid
 
-STRONGEST = 96  # So many rates of a force have images that are followed,
-TURNS = 2  # beside so many multiples.
+STRONGEST = 64  # So many rates of a force have images that are followed,
+TURNS = 4  # beside so many multiples.
 SEEN = 0.7  # Rates below this part of the highest are summed in full.
 ALIAS = 0.05  # What is left of motion a period later.
 

@@ -161,15 +161,22 @@ class Line:
         far = self._far[:, : len(run.responses), -2:]
         # what goes as 1/s^m there is m times smoother than the force
         power = np.rint(np.log2(np.abs(far[..., 0]) / np.abs(far[..., 1])))
+
+        def apart(d: int, n: int) -> Real:
+            truly = np.where(power[d] == n, (far[d, :, 1] * s**n).real, 0.0)
+            return np.where(power[d] < n, 0.0, np.abs(seen[d, :, n] - truly))
+
         for d, force in enumerate(self.forces):
             for when, *sizes in _jumps(force, run.time):
                 since = run.time - when
                 at = (since >= -SOON / abs(s)) & (since <= 1 / self.grid.omega)
-                for n, jump in enumerate(sizes, run.order):
-                    if jump and n < seen.shape[-1]:
-                        truly = np.where(power[d] == n, (far[d, :, 1] * s**n).real, 0.0)
-                        apart = np.where(power[d] < n, 0.0, np.abs(seen[d, :, n] - truly))
-                        wrong += np.multiply.outer(apart * abs(jump), at)
+                for n, jump in enumerate(sizes, run.order - 1):
+                    if jump and 0 <= n < seen.shape[-1]:
+                        wrong += np.multiply.outer(apart(d, n) * abs(jump), at)
+            if run.order and is_sampled(force):
+                slope = force.rate(run.time)
+                corner = np.abs(np.diff(slope, prepend=slope[0]))
+                wrong += np.multiply.outer(apart(d, run.order - 1), corner)
         return wrong
 
     @property
@@ -329,28 +336,27 @@ def _rounding(transfer: TransferFunctions, s: Complex, value: Complex) -> Real:
     return np.asarray(np.repeat(part, width, axis=-1) * size + np.repeat(floor, width, axis=-1))
 
 
-def _jumps(force: Force, time: Real) -> list[tuple[float, float, float]]:
-    """Return when a force jumps within times, by how much, and the blow at that instant."""
+def _jumps(force: Force, time: Real) -> Real:
+    """Return when a force jumps, by how much its rate, itself and its impulse, (n, 4)."""
     begin, end = float(time[0]), float(time[-1])
-    inside = np.array([at for at in force.breaks if begin < at <= end])
-    steps = force.value(inside) - force.value(np.nextafter(inside, -np.inf))
-    found = [(begin, float(force.value(time[:1])[0]), 0.0)]
-    found += [(at, step, 0.0) for at, step in zip(inside.tolist(), steps.tolist())]
-    return [*found, *((at, 0.0, size) for at, size in force.blows if begin <= at <= end)]
+    at = np.array([begin, *(when for when in force.breaks if begin < when <= end)])
+    before = np.nextafter(at, -np.inf)
+    jumps = [at, *(one(at) - one(before) * (at > begin) for one in (force.rate, force.value))]
+    blows = [(when, 0.0, 0.0, size) for when, size in force.blows if begin <= when <= end]
+    return np.concatenate([np.stack([*jumps, 0 * at], axis=1), np.reshape(blows, (-1, 4))])
 
 
 def _largest(force: Force, time: Real) -> tuple[float, float]:
     """Return the largest jump of a force within times, and its largest blow at an instant."""
-    _, jump, blow = np.abs(_jumps(force, time)).max(axis=0)
+    *_, jump, blow = np.abs(_jumps(force, time)).max(axis=0)
     return float(jump), float(blow)
 
 
 def _excited(force: Force, time: Real, omega: float) -> tuple[float, float, float]:
     """Bound how far a force moves a mode from omega on, over r/omega^2, and derivatives of that."""
     jump, blow = _largest(force, time)
-    inside = np.array([at for at in force.breaks if time[0] < at <= time[-1]])
-    corners = force.rate(inside) - force.rate(np.nextafter(inside, -np.inf))
-    slopes = force.rate(time) if is_sampled(force) else force.rate(time[:1])
-    corners = np.concatenate([corners, np.diff(slopes, prepend=0.0)])
+    corners = _jumps(force, time)[:, 1]
+    if is_sampled(force):
+        corners = np.append(corners, np.diff(force.rate(time)))
     most = jump + omega * blow + TIMES / omega * float(np.sqrt((corners**2).sum()))
     return most, most * omega, most * omega**2
