@@ -48,8 +48,8 @@ ROUNDING = 0.5  # Of the error that the sweep bounds, this part, by which rates 
 ROUNDED = 33  # at so many of the rates that are looked at.
 MOST_NUMBERS = 1 << 22  # Lines times pairs of drives and responses, at most, likewise.
 EPS = 16 * np.finfo(float).eps
-FAR = 1e4  # So many times the highest rate no mode of a chain is left: what is infinite there is.
-NEAR = np.array([1.0, 2.0, FAR, 2 * FAR])  # Modes beyond it are told apart by so many times it.
+FAR, LEAST_FAR = 1e4, 1e2  # So many times the highest rate of the times no mode of a chain is left,
+# and so many times that of the sum: what is infinite there is.
 GROWS = 2.0**0.25  # What grows by this with the rate has no bound
 STRONG = 1e-3  # where it is more than this part of the largest value.
 SOON = 1e-6  # What jumps is there from so much before on, over the rate far beyond all modes.
@@ -184,9 +184,15 @@ class Line:
         return self.run.model.element != "continuous"
 
     @property
+    def _near(self) -> Real:
+        """So many times the highest rate modes beyond it are told apart."""
+        far = max(FAR / self.grid.finer, LEAST_FAR)
+        return np.array([1.0, 2.0, far, 2 * far])
+
+    @property
     def _beyond(self) -> Complex:
         """Rates at and beyond the highest, the last two where modes of a chain are over."""
-        beyond = [LOOKS, LOOKS[0] * NEAR, FAR * LOOKS[-2:]]
+        beyond = [LOOKS, LOOKS[0] * self._near, self._near[2] * LOOKS[-2:]]
         some = np.concatenate(beyond if self._is_chain else beyond[:1])
         return np.asarray(self.grid.omega * some, dtype=np.complex128)
 
@@ -197,7 +203,12 @@ class Line:
         if self._is_chain:
             more = filter(_moves, drives)
             drives, asked = (*drives, *filter(_moves, asked)), (*asked, *more)
-        return self.run.look(drives, asked).at(self._beyond)
+        try:
+            return self.run.look(drives, asked).at(self._beyond)
+        except SolveError as refusal:
+            raise SolveError(
+                "what acts at once has no correct digit far beyond the rates that times resolve"
+            ) from refusal
 
     def _unseen(self) -> Real:
         """Bound what modes of a chain beyond the rates do under the forces, (responses,)."""
@@ -230,8 +241,8 @@ class Line:
         """Bound the sum of the residues of modes beyond the rates where a point is driven."""
         # s^2 H is the sum of r s^2/(s^2 + omega^2): all r far out, less x/(1 + x) of each nearer,
         # x = (omega/s)^2: two places leave x^2 of modes below, and up to 3 of those beyond
-        s = self.grid.omega * LOOKS[0] * NEAR
-        value = self._far[drive, response, len(LOOKS) : len(LOOKS) + len(NEAR)]
+        s = self.grid.omega * LOOKS[0] * self._near
+        value = self._far[drive, response, len(LOOKS) : len(LOOKS) + len(s)]
         near, next_, far, farther = value * s * s
         has_mass = abs(farther) < GROWS * abs(far)
         return float(abs(4 * next_ - near - 3 * far)) / 2 if has_mass else 0.0
