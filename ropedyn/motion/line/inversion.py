@@ -33,6 +33,7 @@ from .at_once import LOOKS, at_once, at_once_by, response
 from .force_transform import transform
 from .grid import LEAST, Grid, off
 from .images import ringing
+from .jumps import excited, jumps, largest
 from .transfer import TransferFunctions
 
 SHARES = (0.5, 0.7, 0.85)  # Sums that end at this part of the rates tell the error,
@@ -167,7 +168,7 @@ class Line:
             return np.where(power[d] < n, 0.0, np.abs(seen[d, :, n] - truly))
 
         for d, force in enumerate(self.forces):
-            for when, *sizes in _jumps(force, run.time):
+            for when, *sizes in jumps(force, run.time):
                 since = run.time - when
                 at = (since >= -SOON / abs(s)) & (since <= 1 / self.grid.omega)
                 for n, jump in enumerate(sizes, run.order - 1):
@@ -224,8 +225,8 @@ class Line:
         for k, r in enumerate(np.flatnonzero([_moves(point) for point in run.responses])):
             watched[r] = self._light(len(run.places) + k, r)
         for light, force in zip(pushed, self.forces):
-            excited = _excited(force, run.time, omega)[run.order]
-            bound += excited * omega**-2.0 * np.sqrt(light * watched)
+            shaken = excited(force, run.time, omega)[run.order]
+            bound += shaken * omega**-2.0 * np.sqrt(light * watched)
         return bound
 
     def _images(self) -> Real:
@@ -254,7 +255,7 @@ class Line:
         run, s = self.run, self._beyond[-2:]
         far = self._far[:, : len(run.responses), -2:]
         for d, (place, force) in enumerate(zip(run.places, self.forces)):
-            for more, size in enumerate(_largest(force, run.time)):
+            for more, size in enumerate(largest(force, run.time)):
                 reach = np.abs(far[d] * s ** (run.order + more))
                 grows = reach[:, 1] > GROWS * reach[:, 0]
                 seen = size * reach[:, 1] > STRONG * np.abs(moved.value).max(axis=1)
@@ -345,29 +346,3 @@ def _rounding(transfer: TransferFunctions, s: Complex, value: Complex) -> Real:
     width = np.diff(at)
     width[-1] += 1
     return np.asarray(np.repeat(part, width, axis=-1) * size + np.repeat(floor, width, axis=-1))
-
-
-def _jumps(force: Force, time: Real) -> Real:
-    """Return when a force jumps, by how much its rate, itself and its impulse, (n, 4)."""
-    begin, end = float(time[0]), float(time[-1])
-    at = np.array([begin, *(when for when in force.breaks if begin < when <= end)])
-    before = np.nextafter(at, -np.inf)
-    jumps = [at, *(one(at) - one(before) * (at > begin) for one in (force.rate, force.value))]
-    blows = [(when, 0.0, 0.0, size) for when, size in force.blows if begin <= when <= end]
-    return np.concatenate([np.stack([*jumps, 0 * at], axis=1), np.reshape(blows, (-1, 4))])
-
-
-def _largest(force: Force, time: Real) -> tuple[float, float]:
-    """Return the largest jump of a force within times, and its largest blow at an instant."""
-    *_, jump, blow = np.abs(_jumps(force, time)).max(axis=0)
-    return float(jump), float(blow)
-
-
-def _excited(force: Force, time: Real, omega: float) -> tuple[float, float, float]:
-    """Bound how far a force moves a mode from omega on, over r/omega^2, and derivatives of that."""
-    jump, blow = _largest(force, time)
-    corners = _jumps(force, time)[:, 1]
-    if is_sampled(force):
-        corners = np.append(corners, np.diff(force.rate(time)))
-    most = jump + omega * blow + TIMES / omega * float(np.sqrt((corners**2).sum()))
-    return most, most * omega, most * omega**2
