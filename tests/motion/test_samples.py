@@ -31,6 +31,19 @@ def test_corners_between_samples_that_ring_a_mode_are_told(elements, response, s
     assert (off <= some.error + every.error[:, ::8]).all()
 
 
+def test_records_of_any_length_are_followed_beyond_what_their_times_resolve(monkeypatch):
+    """Noise of 10^6 samples was refused: its first sum took all rates that there were."""
+    monkeypatch.setattr("ropedyn.motion.line.transfer.MOST", 1)
+    scene = rd.Scene(
+        rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ViscousDamping(0.5), parts=[DASHPOT]
+    )
+    force = np.random.default_rng(0).normal(size=1001)
+    asked = {"drive": ("z", 0.25), "force": force, "response": ("z", 0.5)}
+    history = scene.compile(elements=16).transient(np.arange(1001) / 600.0, **asked)
+    assert history.error.max() <= 1e-3 * np.abs(history.value).max()
+    assert history.cost.sweeps > 2 * 1001
+
+
 def random_case(seed):
     """Return a damped scene, times that may be uneven, samples and what is asked."""
     random = np.random.default_rng(seed)
