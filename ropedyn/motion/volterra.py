@@ -41,7 +41,8 @@ from .request import TOLERANCE, Run
 from .smooth.laws import LawFailure, SmoothLaw
 from .smooth.smooth import scale
 
-FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, of a second run at least and at most.
+FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, of a second run at least and at most, or
+RUNS = 4  # so many times those of the first: three runs.
 SHARPER = 0.05  # Linear motion is known to this part of the tolerance, if it can be,
 SHAPED = 0.25  # from shapes and velocities to this.
 TIMES = 2.0  # A run is off by so many times its distance to one with steps twice as long, or what
@@ -214,6 +215,7 @@ def _ended(run: Run, ended: Ended) -> History:
 def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
     """Halve the steps until two runs agree within the tolerance."""
     count, before = _first(run), None
+    most_steps = max(MOST_STEPS, RUNS * count)
     apart: Real | float = np.inf
     laws = CoreActing.of(run.model)
     while True:
@@ -221,21 +223,23 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
         try:
             found = stepped.moved()
         except Ended as ended:
-            if not isinstance(ended.error, Unsettled) or 2 * count > MOST_STEPS:
+            if not isinstance(ended.error, Unsettled) or 2 * count > most_steps:
                 raise
             count, before, apart = 2 * count, None, np.inf
             continue
         if before is not None:
             now = np.maximum.accumulate(np.abs(found.value - before.value), axis=1)
             # where velocities turn, two runs may agree by chance
-            wrong, seen = (TIMES * d for d in (np.maximum(now, apart / FALLS), now))
-            known = found._replace(error=found.error + wrong)
+            both = np.maximum(now, apart / FALLS)
+            known = found._replace(error=found.error + TIMES * both)
             most = tolerance * scale(found.value)[:, None]
             if (known.error <= most).all():
                 return stepped, known
             # shorter steps do not help where linear motion is not known
-            if 2 * count > MOST_STEPS or (np.minimum(found.error, before.error) > most).any():
-                raise _unknown(run, tolerance, count, found._replace(error=found.error + seen))
+            if 2 * count > most_steps or (np.minimum(found.error, before.error) > most).any():
+                seen = np.where(np.isfinite(both), both, now)
+                known = found._replace(error=found.error + TIMES * seen)
+                raise _unknown(run, tolerance, count, known)
             apart = np.maximum(now, np.where(np.isfinite(apart), apart / FORGETS, 0.0))
         count, before = 2 * count, found
 

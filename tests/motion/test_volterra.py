@@ -149,6 +149,15 @@ def test_what_is_not_known_is_refused_with_the_time_until_which_it_is(monkeypatc
         model.transient(TIME, **SHAKEN, response=MIDDLE, tolerance=1e-5)
 
 
+def test_records_longer_than_the_most_steps_are_answered_by_three_runs(monkeypatch):
+    monkeypatch.setattr("ropedyn.motion.volterra.MOST_STEPS", 500)
+    model = scene(KINDS["stop"]).compile(elements=10)
+    history = model.transient(TIME, **SHAKEN, response=MIDDLE, tolerance=1e-2)
+    assert history.cost.method == "volterra"
+    assert history.cost.sweeps >= 2 * (len(TIME) - 1)
+    assert history.error.max() <= 1e-2 * np.abs(history.value).max()
+
+
 def test_a_law_that_fails_says_where():
     def law(t, u, v):
         if t > 0.05:
