@@ -98,7 +98,7 @@ class SpaceTransfer:
         pushes = bool((np.linalg.eigvalsh(rope.springs) < 0).any())
         return growth_below(least, scene.dampings, pushes=pushes)
 
-    def most(self, omega: float) -> int:
+    def most(self, omega: float, _resolved: int) -> int:
         """Return how many rates are looked at: each takes as long as its parts."""
         asked = self._asked(np.array([1j * omega]))
         try:

@@ -165,6 +165,14 @@ def test_acceleration_where_a_force_jumps_is_infinite(monkeypatch):
         MODEL.transient(TIME, drive=AT, force=rd.Step(1.0), quantity="acceleration")
 
 
+def test_rates_go_no_further_than_their_parts_let(monkeypatch):
+    """However many the times resolve: each takes as long as its parts."""
+    monkeypatch.setattr(motion, "WORK", 0)
+    noise = np.random.default_rng(2).normal(size=len(TIME))
+    with pytest.raises(rd.SolveError, match=r"by the line at 2[56]\d rates"):
+        MODEL.transient(TIME, drive=AT, force=noise, response=SEEN, quantity="acceleration")
+
+
 def test_energy_and_losses_are_refused_by_name():
     history = MODEL.transient(TIME[:41], **PUSH)
     with pytest.raises(rd.SceneError, match="energy is not carried for a rope on an axis"):

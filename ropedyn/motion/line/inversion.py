@@ -48,7 +48,6 @@ ROUGH = 1e-3  # Else it is looked at for two periods, with this alias.
 ROUNDING = 0.5  # Of the error that the sweep bounds, this part, by which rates do not depend,
 ROUNDED = 33  # at so many of the rates that are looked at.
 MOST_NUMBERS = 1 << 23  # Lines times pairs of drives and responses, at most, likewise.
-FURTHER = 4  # So many times as far as the times resolve rates reach where there are many of them.
 EPS = 16 * np.finfo(float).eps
 FAR, LEAST_FAR = 1e4, 1e2  # So many times the highest rate of the times no mode of a chain is left,
 # and so many times that of the sum: what is infinite there is.
@@ -113,7 +112,7 @@ class Line:
     def reaches(self, times: int) -> bool:
         """Whether rates so many times as far can be looked at."""
         lines, numbers = times * self.grid.lines, times * self.value.size
-        most = max(self.transfer.most(times * self.grid.omega), FURTHER * self.grid.count // 2)
+        most = self.transfer.most(times * self.grid.omega, self.grid.count // 2)
         return numbers <= MOST_NUMBERS and lines <= most
 
     def motion(self) -> Moved:

@@ -23,7 +23,8 @@ from ...response.question import Question
 from ...response.solvers import SOLVERS
 from ...scene import damping
 
-MOST = 1 << 19  # Rates.
+MOST = 1 << 19  # Rates, or
+FURTHER = 4  # so many times as far as the times resolve.
 
 
 class TransferFunctions(Protocol):
@@ -33,8 +34,8 @@ class TransferFunctions(Protocol):
     def growth(self) -> float:
         """How fast motion grows at most [1/s]."""
 
-    def most(self, omega: float) -> int:
-        """Return how many rates up to one [rad/s] are looked at, where times resolve fewer."""
+    def most(self, omega: float, resolved: int) -> int:
+        """Return how many rates up to one [rad/s] are looked at, where times resolve so many."""
 
     def at(self, s: Complex) -> Complex:
         """Return it, shape (drives, responses, n)."""
@@ -61,9 +62,9 @@ class Transfer:
         pushes = bool((np.linalg.eigvalsh(stiffness) < 0).any())
         return growth_below(min(least, 0.0), model.scene.dampings, pushes=pushes)
 
-    def most(self, _omega: float) -> int:
+    def most(self, _omega: float, resolved: int) -> int:
         """Return how many rates are looked at."""
-        return MOST
+        return max(MOST, FURTHER * resolved)
 
     def at(self, s: Complex) -> Complex:
         """Return it, shape (drives, responses, n)."""
