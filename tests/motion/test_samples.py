@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 import ropedyn as rd
+from ropedyn.motion.line.grid import Grid
+from ropedyn.motion.line.images import ringing
+from ropedyn.scene.force import Samples, Sum
 
 FINER = 8  # So many samples on each straight line.
 DASHPOT = rd.Dashpot(0.3, 1.0)
@@ -42,6 +45,21 @@ def test_records_of_any_length_are_followed_beyond_what_their_times_resolve(monk
     history = scene.compile(elements=16).transient(np.arange(1001) / 600.0, **asked)
     assert history.error.max() <= 1e-3 * np.abs(history.value).max()
     assert history.cost.sweeps > 2 * 1001
+
+
+def test_images_of_a_sum_are_those_of_its_samples():
+    """A sine has none: it is no sum of straight lines."""
+    time = np.linspace(0.0, 1.0, 401)
+    samples = Samples(time, np.sin(2 * np.pi * 30.0 * time))
+    grid = Grid.over(time, 1e-3, 0.0, 0.0, 1)
+
+    def follow(s):
+        return 1 / (s * s + 2.0 * s + (2 * np.pi * 370.0) ** 2)[None]
+
+    alone = ringing(samples, grid, 0, follow)
+    beside = ringing(Sum((rd.Sine(100.0, 30.0), samples)), grid, 0, follow)
+    assert alone > 0
+    assert beside == alone
 
 
 def random_case(seed):

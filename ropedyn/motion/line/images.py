@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.array import Complex, Real
-from ...scene.force import Force, Samples, Sum
+from ...scene.force import Force, Samples, Sum, is_sampled
 from .force_transform import transform
 from .grid import Grid
 
@@ -24,26 +24,21 @@ SEEN = 0.7  # Rates below this part of the highest are summed in full.
 ALIAS = 0.05  # What is left of motion a period later.
 
 
-def sample_step(force: Force) -> float:
-    """Return the step of a force's samples on average, infinite where it has none [s]."""
-    if isinstance(force, Sum):
-        return min(map(sample_step, force.forces))
-    if not isinstance(force, Samples):
-        return math.inf
-    return float(force.time[-1] - force.time[0]) / (len(force.time) - 1)
-
-
 def ringing(force: Force, grid: Grid, order: int, follow: Callable[[Complex], Complex]) -> Real:
     """Return how large a derivative of the images' motion becomes, (responses,).
 
     `follow` says what the force moves beyond the rates, (responses, n).
     """
+    if isinstance(force, Sum):
+        parts = [one for one in force.forces if is_sampled(one)]
+        return np.asarray(sum(ringing(one, grid, order, follow) for one in parts))
+    assert isinstance(force, Samples)
     near = replace(grid, finer=1, a=grid.a + math.log(grid.decay / ALIAS) / grid.period)
     s = near.s[1:]
     repeated = transform(force, near)[1:] * s * s
     size = np.abs(repeated) ** 2
     strong = np.sort(size.argsort()[-STRONGEST:])
-    turn = 2 * math.pi / sample_step(force)
+    turn = 2 * math.pi * (len(force.time) - 1) / float(force.time[-1] - force.time[0])
     first = max(1, math.floor(SEEN * grid.omega / turn))
     turns = turn * np.arange(first, first + TURNS)
     # below and above each multiple: images of -s and s

@@ -28,9 +28,9 @@ def largest(force: Force, time: Real) -> tuple[float, float]:
 
 def excited(force: Force, time: Real, omega: float) -> tuple[float, float, float]:
     """Bound how far a force moves a mode from omega on, over r/omega^2, and derivatives of that."""
-    jump, blow = largest(force, time)
-    corners = jumps(force, time)[:, 1]
+    _, corners, steps, blows = np.abs(jumps(force, time)).T
     if is_sampled(force):
         corners = np.append(corners, np.diff(force.rate(time)))
-    most = jump + omega * blow + TIMES / omega * float(np.sqrt((corners**2).sum()))
+    bends = TIMES / omega * np.sqrt((corners**2).sum())
+    most = float(steps.max() + omega * blows.max() + bends)
     return most, most * omega, most * omega**2
