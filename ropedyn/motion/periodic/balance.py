@@ -110,14 +110,15 @@ class HarmonicBalance:
 
     def _jacobian(self, H: Complex, felt: Felt, omega: Real | float) -> Real:
         """Return the slope of what is not balanced by the unknowns."""
-        m, order = self.points, 2 * self.harmonics + 1
-        by_u, by_v = (
-            np.fft.rfft(one, norm="forward").reshape(-1, m, m, self.samples // 2 + 1)
-            for one in (felt.by_u, felt.by_v)
-        )
-        rate, turns = np.array(omega, dtype=np.float64).ravel(), felt.by_v.any()
-        found = _core.balance(H.reshape(-1, *H.shape[-3:]), by_u, by_v if turns else None, rate)
-        return found.reshape(*np.shape(omega), m * order, m * order)
+        m, n = self.points, self.points * (2 * self.harmonics + 1)
+
+        def spectrum(slope: Real) -> Complex:
+            return np.fft.rfft(slope, norm="forward").reshape(-1, m, m, self.samples // 2 + 1)
+
+        by_v = spectrum(felt.by_v) if felt.by_v.any() else None
+        rate = np.array(omega, dtype=np.float64).ravel()
+        found = _core.balance(H.reshape(-1, *H.shape[-3:]), spectrum(felt.by_u), by_v, rate)
+        return found.reshape(*np.shape(omega), n, n)
 
 
 def _on(H: Complex, push: Complex) -> Complex:
