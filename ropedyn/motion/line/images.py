@@ -43,8 +43,11 @@ def ringing(force: Force, grid: Grid, order: int, follow: Callable[[Complex], Co
     turns = turn * np.arange(first, first + TURNS)
     # below and above each multiple: images of -s and s
     at = near.a + 1j * (turns[:, None, None] + np.outer((-1, 1), s[strong].imag))
-    moves = follow(at.ravel()).reshape(-1, *at.shape)
-    moves *= at ** (order - 2) * (at.imag > SEEN * grid.omega)
+    beyond = at.imag > SEEN * grid.omega
+    at = at[beyond]
+    moved = follow(at) * at ** (order - 2)
+    moves = np.zeros((len(moved), *beyond.shape), dtype=np.complex128)
+    moves[:, beyond] = moved
     spectrum = np.zeros((len(moves), len(near.s)), dtype=np.complex128)
     both = moves[:, :, 0].conj() + moves[:, :, 1]
     spectrum[:, strong + 1] = both.sum(axis=1) * repeated[strong]

@@ -34,7 +34,7 @@ from .force_transform import transform
 from .grid import LEAST, Grid, off
 from .images import ringing
 from .jumps import excited, jumps, largest
-from .transfer import Transfer, TransferFunctions
+from .transfer import TransferFunctions
 
 SHARES = (0.5, 0.7, 0.85)  # Sums that end at this part of the rates tell the error,
 TIMES = 2.0  # so many times over,
@@ -234,7 +234,7 @@ class Line:
         """Return what corners between samples ring beyond the rates, (responses,)."""
         found = np.zeros(len(self.run.responses))
         for d, one in enumerate(self.forces):
-            if is_sampled(one) and isinstance(self.transfer, Transfer):  # structures take minutes
+            if is_sampled(one):
                 rest = partial(_rest, self.transfer, self._smooth[0], d)
                 found += ringing(one, self.grid, self.run.order, rest)
         return found
