@@ -55,6 +55,7 @@ GROWS = 2.0**0.25  # What grows by this with the rate has no bound
 STRONG = 1e-3  # where it is more than this part of the largest value.
 SOON = 1e-6  # What jumps is there from so much before on, over the rate far beyond all modes.
 LOST = 10.0  # Times the tolerance: an error that twice the rates rarely mend.
+FINE, FIRST = 1e-5, 4  # So fine a tolerance is rarely reached by fewer times the times' rates.
 REACH = 4.0  # They reach so many times as far as the forces do, at first.
 
 
@@ -97,6 +98,7 @@ class Line:
         omega = 2 * math.pi * REACH * max((f.bandwidth for f in forces), default=0.0)
         # whose responses are not small up to where the sum ends
         least = 2 if any(force.blows for force in forces) else 1
+        least = least if tolerance > FINE else FIRST
         transfer = run.look(tuple(run.places), run.responses)
         grid = Grid.over(run.time, tolerance, transfer.growth, omega, least)
         return cls(run, transfer, forces, grid, transfer.at(grid.s), (slice(0, len(grid.s)),))
