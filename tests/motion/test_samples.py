@@ -1,9 +1,11 @@
 """Linear motion under forces of samples: straight lines between them are those on finer samples."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
+from scipy.signal import lsim
 
 import ropedyn as rd
 from ropedyn.motion.line.grid import Grid
@@ -61,6 +63,21 @@ def test_records_of_any_length_are_followed_beyond_what_their_times_resolve(monk
     history = scene.compile(elements=16).transient(np.arange(1001) / 600.0, **asked)
     assert history.error.max() <= 1e-3 * np.abs(history.value).max()
     assert history.cost.sweeps > 2 * 1001
+
+
+@pytest.mark.parametrize("finer", [1, 8, 64])
+@pytest.mark.parametrize("beyond", [0.9, 1.4])
+def test_images_are_what_a_mode_near_or_beyond_the_highest_rate_does(finer, beyond):
+    """Of long sums only multiples below the highest rate were looked at."""
+    time, rate = np.linspace(0.0, 1.0, 401), 30.0
+    samples = Samples(time, np.sin(2 * np.pi * rate * time) * np.sin(np.pi * time) ** 2)
+    grid = replace(Grid.over(time, 1e-3, 0.0, 0.0, 1), finer=finer)
+    multiple = max(1, round(beyond * finer / 2))
+    mode, drag = 2 * np.pi * (400.0 * multiple - rate), 2.0
+    alone = ringing(samples, grid, 0, lambda s: 1 / (s * s + drag * s + mode**2)[None])
+    _, motion, _ = lsim(([1.0], [1.0, drag, mode**2]), samples.sample, time)
+    motion -= samples.sample / mode**2  # it follows the force beside
+    assert alone == pytest.approx(np.abs(motion).max(), rel=0.05)  # measured: 0.012
 
 
 def test_images_of_a_sum_are_those_of_its_samples():

@@ -19,8 +19,8 @@ from .force_transform import transform
 from .grid import Grid
 
 STRONGEST = 64  # So many rates of a force have images that are followed,
-TURNS = 4  # beside so many multiples.
-SEEN = 0.7  # Rates below this part of the highest are summed in full.
+SEEN, UNSEEN = 0.7, 1.5  # beside multiples from where sums fade to this part of the highest rate,
+TURNS = 4  # and so many more.
 ALIAS = 0.05  # What is left of motion a period later.
 
 
@@ -33,25 +33,25 @@ def ringing(force: Force, grid: Grid, order: int, follow: Callable[[Complex], Co
         parts = [one for one in force.forces if is_sampled(one)]
         return np.asarray(sum(ringing(one, grid, order, follow) for one in parts))
     assert isinstance(force, Samples)
-    near = replace(grid, finer=1, a=grid.a + math.log(grid.decay / ALIAS) / grid.period)
-    s = near.s[1:]
-    repeated = transform(force, near)[1:] * s * s
+    line = replace(grid, finer=1, a=grid.a + math.log(grid.decay / ALIAS) / grid.period)
+    s = line.s[1:]
+    repeated = transform(force, line)[1:] * s * s
     size = np.abs(repeated) ** 2
     strong = np.sort(size.argsort()[-STRONGEST:])
     turn = 2 * math.pi * (len(force.time) - 1) / float(force.time[-1] - force.time[0])
-    first = max(1, math.floor(SEEN * grid.omega / turn))
-    turns = turn * np.arange(first, first + TURNS)
+    near, far = (share * grid.omega / turn for share in (SEEN, UNSEEN))
+    turns = turn * np.arange(max(1, math.floor(near)), math.ceil(far) + TURNS)
     # below and above each multiple: images of -s and s
-    at = near.a + 1j * (turns[:, None, None] + np.outer((-1, 1), s[strong].imag))
+    at = line.a + 1j * (turns[:, None, None] + np.outer((-1, 1), s[strong].imag))
     beyond = at.imag > SEEN * grid.omega
     at = at[beyond]
     moved = follow(at) * at ** (order - 2)
     moves = np.zeros((len(moved), *beyond.shape), dtype=np.complex128)
     moves[:, beyond] = moved
-    spectrum = np.zeros((len(moves), len(near.s)), dtype=np.complex128)
+    spectrum = np.zeros((len(moves), len(line.s)), dtype=np.complex128)
     both = moves[:, :, 0].conj() + moves[:, :, 1]
     spectrum[:, strong + 1] = both.sum(axis=1) * repeated[strong]
-    motion = near.finely(spectrum)[:, : grid.steps + 1]
+    motion = line.finely(spectrum)[:, : grid.steps + 1]
     # what is not followed comes on top, as noise does
     share = size[strong].sum() / max(float(size.sum()), np.finfo(float).tiny)
     return np.asarray(np.abs(motion).max(axis=1) / math.sqrt(share or 1.0))
