@@ -15,7 +15,7 @@ from ropedyn.scene.force import Samples
 
 LENGTH, DENSITY, TENSION = 1.3, 0.1, 100.0
 ROPE = rd.Rope(LENGTH, DENSITY, bending_stiffness=0.5)
-DASHPOT = rd.Dashpot(0.3, 1.0)
+DASHPOT, PINNED = rd.Dashpot(0.3, 1.0), ("pinned", "pinned")
 TIME = np.linspace(0.0, 0.3, 401)
 MODEL = rd.Scene(ROPE, tension=TENSION, parts=[DASHPOT]).compile()
 CHAIN = MODEL.scene.compile(elements=26)
@@ -61,7 +61,7 @@ class Sample:
         """What must be true of any sample."""
         assert self.overlooked == 0
         assert np.mean(self.covered) >= 0.99
-        assert self.ratio <= 200  # measured: 76 to 121 of 200 scenes
+        assert self.ratio <= 100  # measured: 74 of 161 scenes
         assert max(self.error) <= 1e-3
         assert self.raised <= 0.02 * (len(self.error) + self.raised)
 
@@ -123,6 +123,20 @@ def test_error_covers_the_instant_of_a_jump_that_strong_damping_holds(gamma):
     assert (np.abs(history.value[0] - exact) <= history.error[0]).all()
 
 
+@pytest.mark.parametrize("quantity", ["displacement", "velocity"])
+def test_internal_forces_know_of_rotating_modes_beyond_the_rates(quantity):
+    """They were up to 11 % off where 1e-5 was said."""
+    rope = rd.Rope(2.65, 0.331, bending_stiffness=391.0, rotary_inertia=3.73e-5)
+    scene = rd.Scene(rope, tension=565.0, damping=rd.StiffnessDamping(3.4e-8), ends=PINNED)
+    model = scene.compile(elements=12, element="rigid")
+    asked = {"drive": ("z", model.x[11]), "force": rd.Step(1.0), "response": ("F_z", 0.0)}
+    time = np.arange(120) * 5.832e-4
+    some, more = (
+        model.transient(time, **asked, quantity=quantity, tolerance=to) for to in (1e-3, 1e-7)
+    )
+    assert (np.abs(some.value - more.value) <= some.error + more.error).all()
+
+
 def test_a_response_that_hardly_arrives_is_known():
     """Between rates where it has no digit and those where it has all of them rounding is small."""
     sample = Sample([880_248])
@@ -159,6 +173,21 @@ def test_times_that_are_not_even_are_those_of_even_ones(force):
     # straight lines between even samples are not those between others
     beside = 2e-3 * np.abs(every.value).max() * isinstance(force, np.ndarray)
     assert (apart <= some.error[:, both] + every.error[:, np.isin(TIME, time)] + beside).all()
+
+
+@pytest.mark.parametrize("off", [1e-9, 1e-7, 9e-7, 1e-5, 0.1])
+def test_alternating_samples_at_times_nearly_even_are_not_those_of_even_ones(off):
+    """What they move slowly is all that times are off: up to 5 % was lost below 1e-6."""
+    model = rd.Scene(rd.Rope(0.8, 0.16), tension=3700.0, damping=rd.ViscousDamping(1.0))
+    model, time = model.compile(elements=8, element="rigid"), np.arange(167.0)
+    time[1:-1] += np.random.default_rng(0).uniform(-off, off, 165)
+    asked = {"drive": ("z", 0.1), "force": (-1.0) ** np.arange(167) * np.hanning(167)}
+    line, exact = (
+        model.transient(6.57e-4 * time, **asked, response=("z", 0.5), method=method)
+        for method in ("line", "modal")
+    )
+    assert (np.abs(line.value - exact.value) <= line.error + exact.error).all()
+    assert line.error.max() <= 1e-3 * np.abs(exact.value).max()
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
@@ -209,9 +238,9 @@ def test_transform_of_samples_keeps_its_digits_where_times_are_close(gap):
 
 
 @pytest.mark.parametrize(
-    ("method", "quantity", "most"),  # measured: 2e-10, 3e-7, 4e-16, 1.5e-15
+    ("method", "quantity", "most"),  # measured: 5e-11, 2.2e-7, 4e-16, 1.5e-15
     [
-        ("line", "displacement", 1e-8),
+        ("line", "displacement", 5e-9),
         ("line", "velocity", 1e-5),
         ("modal", "displacement", 1e-14),
         ("modal", "velocity", 1e-13),
@@ -220,7 +249,7 @@ def test_transform_of_samples_keeps_its_digits_where_times_are_close(gap):
 def test_jump_between_neighbouring_times_is_a_step(method, quantity, most):
     model = rd.Scene(ROPE, tension=TENSION).compile(elements=26)
     time = np.sort([0.0, 0.013, 0.07, 0.1, np.nextafter(0.1, 1.0), 0.17, 0.22, 0.3])
-    asked = {"response": ("z", 0.65), "method": method, "quantity": quantity}
+    asked = {**SEEN, "method": method, "quantity": quantity, "tolerance": 1e-5}
     drawn = model.transient(time, drive=("z", 0.4), force=1.0 * (time <= 0.1), **asked)
     steps = [rd.Step(1.0), rd.Step(-1.0, time=0.1)]
     stepped = model.transient(time, drive=[("z", 0.4)] * 2, force=steps, **asked)

@@ -80,7 +80,20 @@ def _of_samples(force: Samples, grid: Grid) -> Complex:
     np.divide(hats, z * z, out=total, where=z != 0)
     if force.sample[0]:
         total -= force.sample[0] * ramp(z)
-    return np.asarray(h * total)
+    return np.asarray(h * total if is_even(force.time, 0.0) else h * total + _off_even(force, grid))
+
+
+def _off_even(force: Samples, grid: Grid) -> Complex:
+    """Transform what straight lines between nearly even times add to those between even ones."""
+    even = np.linspace(force.time[0], force.time[-1], len(force.time))
+    corners = (
+        np.diff(np.diff(force.sample) / np.diff(time), prepend=0.0, append=0.0)
+        for time in (even, force.time)
+    )
+    before, corner = (one * np.exp(-grid.a * (even - grid.begin)) for one in corners)
+    here, later = np.fft.fft([corner - before, corner * (force.time - even)], grid.count)
+    size = len(grid.s)
+    return np.asarray((np.resize(here, size) / grid.s - np.resize(later, size)) / grid.s)
 
 
 def _of_hats(force: Samples, grid: Grid) -> Complex:

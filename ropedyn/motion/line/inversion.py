@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -19,10 +18,8 @@ from ...base.array import Complex, Real
 from ...base.computed import computed
 from ...base.errors import SceneError, SolveError
 from ...base.unit import MOTIONS
-from ...chain.port import Point, is_force
-from ...chain.tip import is_tip
 from ...eigen.damped.rates import Rates
-from ...response.moved_end import is_end
+from ...eigen.spectrum import count_component
 from ...scene import damping
 from ...scene.force import Force, Step, is_sampled
 from ..modal.convolution import convolve
@@ -36,18 +33,20 @@ from .images import ringing
 from .jumps import excited, jumps, largest
 from .transfer import TransferFunctions
 
-SHARES = (0.5, 0.7, 0.85)  # Sums that end at this part of the rates tell the error,
-TIMES = 2.0  # so many times over,
-LAST = 8  # What is left beyond the rates is told by the last of so many parts of them.
-DEAD = 0.3  # Modes beyond the rates whose stiffness lags by more [rad] do not ring.
+SHARES = {0.5: 1.2, 0.7: 2.8, 0.85: 4.0}
+"""Sums that end at this part of the rates tell the error, so many times over,"""
 AROUND = 4  # where they differ most within so many steps.
 SHARP = 20  # p.
+TIMES = 2.0  # What images make is told so many times over.
+LAST = 8  # What is left beyond the rates is told by the last of so many parts of them.
+FADED = 0.8  # Modes beyond this part of the highest rate are not summed in full: what they do is
+WIDTH = 0.01  # looked for in steps of this part of their rates.
+DEAD = 0.3  # Modes beyond the rates whose stiffness lags by more [rad] do not ring.
 ALIAS = 8.0  # A period later motion may be so much larger,
 GROWN = 2.0  # where it grows by at most so much after the record.
 ROUGH = 1e-3  # Else it is looked at for two periods, with this alias.
-ROUNDING = 0.5  # Of the error that the sweep bounds, this part, by which rates do not depend,
-ROUNDED = 33  # at so many of the rates that are looked at.
-MOST_NUMBERS = 1 << 23  # Lines times pairs of drives and responses, at most, likewise.
+ROUNDED = 33  # Rounding is bounded at so many of the rates that are looked at together.
+MOST_NUMBERS = 1 << 23  # Lines times pairs of drives and responses, at most.
 EPS = 16 * np.finfo(float).eps
 FAR, LEAST_FAR = 1e4, 1e2  # So many times the highest rate of the times no mode of a chain is left,
 # and so many times that of the sum: what is infinite there is.
@@ -129,7 +128,7 @@ class Line:
         # modes beyond the rates, where none is near their end, are seen by what they do there
         last = np.median(np.abs(smooth[:, -(grid.lines // LAST) :]), axis=1)
         alias += grid.omega / math.pi * last + self._unseen() + TIMES * self._images()
-        error = TIMES * differ + alias[:, None] + self._at_jumps(fast)
+        error = differ + alias[:, None] + self._at_jumps(fast)
         return Moved(value, error, "line", lines=grid.lines)
 
     def rounded(self, moved: Moved) -> Moved:
@@ -138,14 +137,19 @@ class Line:
         parts = [_rounding(self.transfer, grid.s[k], self.value[..., k]) for k in self.parts]
         wrong = np.concatenate(parts, axis=2) + EPS * np.abs(response(fast, grid.s))
         wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
-        wrong = ROUNDING / grid.period * np.sqrt((wrong**2).sum(axis=1))
+        # transforms are rounded as those of forces that do not alternate
+        most = np.array([np.abs(one.value(self.run.time)).max() for one in self.forces])
+        wrong += np.einsum("d,drk->rk", EPS / 4 * most, np.abs(self.value)) * np.abs(grid.s) ** (
+            self.run.order - 1
+        )
+        wrong = np.sqrt((wrong**2).sum(axis=1)) / grid.period
         grown = np.exp(grid.a * (self.run.time - grid.begin))
         return moved._replace(error=moved.error + np.multiply.outer(wrong, grown))
 
     @computed
     def _smooth(self) -> tuple[Expansion, Complex, Complex]:
         """What the transfer functions do at once, the forces, and the motion without it."""
-        looked = self._far[: len(self.run.places), : len(self.run.responses), : len(LOOKS)]
+        looked = self._far[..., : len(LOOKS)]
         fast = at_once(looked, self.grid.omega, self.value[..., 0])
         force = np.stack([transform(one, self.grid) for one in self.forces])
         force *= self.grid.s**self.run.order
@@ -162,7 +166,7 @@ class Line:
         if not self._is_chain:
             return wrong
         seen = at_once_by(fast)
-        far = self._far[:, : len(run.responses), -2:]
+        far = self._far[..., -2:]
         # what goes as 1/s^m there is m times smoother than the force
         power = np.rint(np.log2(np.abs(far[..., 0]) / np.abs(far[..., 1])))
 
@@ -188,75 +192,66 @@ class Line:
         return self.run.model.element != "continuous"
 
     @property
-    def _near(self) -> Real:
-        """So many times the highest rate modes beyond it are told apart."""
-        far = max(FAR / self.grid.finer, LEAST_FAR)
-        return np.array([1.0, 2.0, far, 2 * far])
+    def _end(self) -> float:
+        """So many times the highest rate no mode of a chain is left."""
+        return max(FAR / self.grid.finer, LEAST_FAR)
 
     @property
     def _beyond(self) -> Complex:
-        """Rates at and beyond the highest, the last two where modes of a chain are over."""
-        beyond = [LOOKS, LOOKS[0] * self._near, self._near[2] * LOOKS[-2:]]
-        some = np.concatenate(beyond if self._is_chain else beyond[:1])
-        return np.asarray(self.grid.omega * some, dtype=np.complex128)
+        """Rates beyond the highest, the last two where modes of a chain are over."""
+        some = [LOOKS, self._end * LOOKS[-2:]] if self._is_chain else [LOOKS]
+        return np.asarray(self.grid.omega * np.concatenate(some), dtype=np.complex128)
 
     @computed
     def _far(self) -> Complex:
-        """The transfer functions there, and of a chain those of each point on itself, in turn."""
-        drives, asked = tuple(self.run.places), self.run.responses
-        if self._is_chain:
-            more = filter(_moves, drives)
-            drives, asked = (*drives, *filter(_moves, asked)), (*asked, *more)
+        """The transfer functions there."""
         try:
-            return self.run.look(drives, asked).at(self._beyond)
+            return self.transfer.at(self._beyond)
         except SolveError as refusal:
             raise SolveError(
                 "what acts at once has no correct digit far beyond the rates that times resolve"
             ) from refusal
 
     def _unseen(self) -> Real:
-        """Bound what modes of a chain beyond the rates do under the forces, (responses,)."""
+        """Estimate what modes of a chain beyond the rates do under the forces, (responses,)."""
         run, omega = self.run, self.grid.omega
-        bound = np.zeros(len(run.responses))
         lag = omega * float(Rates.of(run.model.scene.dampings).linear.real[: damping.INERTIA].max())
         if not self._is_chain or lag > DEAD or run.model.chain.spurious:
             # modes of spans are dense, damped ones over at once, and some of no motion are counted
-            return bound
-        pushed, watched = np.zeros(len(run.places)), np.zeros(len(run.responses))
-        for k, d in enumerate(np.flatnonzero([_moves(point) for point in run.places])):
-            pushed[d] = self._light(d, len(run.responses) + k)
-        for k, r in enumerate(np.flatnonzero([_moves(point) for point in run.responses])):
-            watched[r] = self._light(len(run.places) + k, r)
-        for light, force in zip(pushed, self.forces):
-            shaken = excited(force, run.time, omega)[run.order]
-            bound += shaken * omega**-2.0 * np.sqrt(light * watched)
-        return bound
+            return np.zeros(len(run.responses))
+        rates = self._after(FADED * omega)
+        moved = np.abs(self._rest(np.asarray((1j + WIDTH) * rates)))
+        rung = np.stack([excited(one, run.time, rates)[run.order] for one in self.forces])
+        return np.asarray(2 / math.pi * WIDTH * np.einsum("dk,drk->r", rung, moved))
+
+    def _after(self, omega: float) -> Real:
+        """Return rates from one on until no mode of a chain is left."""
+        model, far = self.run.model, (self._end * self.grid.omega) ** 2
+        every = {each: count_component(model, each, far) for each in model.components}
+        top = omega
+        while any(count_component(model, each, top**2) < every[each] for each in every):
+            top *= 2
+        return np.asarray(omega * np.exp(np.arange(0.0, math.log(top / omega), WIDTH)))
 
     def _images(self) -> Real:
         """Return what corners between samples ring beyond the rates, (responses,)."""
         found = np.zeros(len(self.run.responses))
         for d, one in enumerate(self.forces):
             if is_sampled(one):
-                rest = partial(_rest, self.transfer, self._smooth[0], d)
-                found += ringing(one, self.grid, self.run.order, rest)
+                follow = partial(self._rest, drive=d)
+                found += ringing(one, self.grid, self.run.order, follow)
         return found
 
-    def _light(self, drive: Any, response: Any) -> float:
-        """Bound the sum of the residues of modes beyond the rates where a point is driven."""
-        # s^2 H is the sum of r s^2/(s^2 + omega^2): all r far out, less x/(1 + x) of each nearer,
-        # x = (omega/s)^2: two places leave x^2 of modes below, and up to 3 of those beyond
-        s = self.grid.omega * LOOKS[0] * self._near
-        value = self._far[drive, response, len(LOOKS) : len(LOOKS) + len(s)]
-        near, next_, far, farther = value * s * s
-        has_mass = abs(farther) < GROWS * abs(far)
-        return float(abs(4 * next_ - near - 3 * far)) / 2 if has_mass else 0.0
+    def _rest(self, s: Complex, drive: int | slice = slice(None)) -> Complex:
+        """Return what a drive moves but for what is there at once, (responses, n)."""
+        return np.asarray(self.transfer.at(s)[drive] - response(self._smooth[0], s)[drive])
 
     def refuse_infinite(self, moved: Moved) -> None:
         """Refuse by name what has no bound, as velocity where a blow at an instant hits a beam."""
         if self._is_chain and self.run.model.chain.finite is not None:
             return  # what jumps without inertia has its value from the right
         run, s = self.run, self._beyond[-2:]
-        far = self._far[:, : len(run.responses), -2:]
+        far = self._far[..., -2:]
         for d, (place, force) in enumerate(zip(run.places, self.forces)):
             for more, size in enumerate(largest(force, run.time)):
                 reach = np.abs(far[d] * s ** (run.order + more))
@@ -294,7 +289,8 @@ class Line:
             grid.finely(smooth * np.exp(-36 * np.minimum(share / end, 2.0) ** SHARP))
             for end in (1.0, *SHARES)
         )
-        differ = np.max([np.abs(one - whole) for one in earlier], axis=0)
+        apart = (times * np.abs(one - whole) for one, times in zip(earlier, SHARES.values()))
+        differ = np.max(list(apart), axis=0)
         # few times are far apart
         steps = AROUND * min(1.0, grid.steps / LEAST)
         around = max(2 * AROUND, math.ceil(steps * grid.finer))
@@ -316,7 +312,7 @@ class Line:
         grid = self.grid
         most = size.max(axis=1, initial=0.0)
         record = size[:, : grid.steps * grid.finer + 1].max(axis=1, initial=0.0)
-        if ((size - TIMES * differ).max(axis=1, initial=0.0) <= GROWN * record).all():
+        if ((size - differ).max(axis=1, initial=0.0) <= GROWN * record).all():
             return most
         # it has hardly begun, as where a wave has not arrived
         slower = grid.a + (math.log(self.grid.decay) - math.log(ROUGH) / 2) / grid.period
@@ -325,16 +321,6 @@ class Line:
         ends = np.exp(-36 * np.linspace(0.0, 1.0, twice.lines + 1) ** SHARP)
         after = np.abs(twice.finely(line._smooth[2] * ends))[:, twice.lines :]
         return np.maximum(most, after.max(axis=1))
-
-
-def _rest(transfer: TransferFunctions, fast: Expansion, drive: int, s: Complex) -> Complex:
-    """Return what a drive moves but for what is there at once, (responses, n)."""
-    return np.asarray(transfer.at(s)[drive] - response(fast, s)[drive])
-
-
-def _moves(point: Point) -> bool:
-    """Whether a point is one of the rope that a force would move."""
-    return not (is_end(point) or is_force(point) or is_tip(point))
 
 
 def _rounding(transfer: TransferFunctions, s: Complex, value: Complex) -> Real:

@@ -26,11 +26,11 @@ def largest(force: Force, time: Real) -> tuple[float, float]:
     return float(jump), float(blow)
 
 
-def excited(force: Force, time: Real, omega: float) -> tuple[float, float, float]:
-    """Bound how far a force moves a mode from omega on, over r/omega^2, and derivatives of that."""
+def excited(force: Force, time: Real, omega: Real) -> Real:
+    """Bound how far a force moves modes of rates (n,) over r/omega^2, and derivatives, (3, n)."""
     _, corners, steps, blows = np.abs(jumps(force, time)).T
     if is_sampled(force):
         corners = np.append(corners, np.diff(force.rate(time)))
-    bends = TIMES / omega * np.sqrt((corners**2).sum())
-    most = float(steps.max() + omega * blows.max() + bends)
-    return most, most * omega, most * omega**2
+    bends = TIMES * np.sqrt((corners**2).sum())
+    most = steps.max() + omega * blows.max() + bends / omega
+    return np.stack([most, most * omega, most * omega**2])
