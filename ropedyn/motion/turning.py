@@ -40,6 +40,7 @@ WHY = "where lay_coupling turns the rope under a tension"
 def turned(run: Run, solve: Callable[[Run], History]) -> History:
     """Follow a motion, with the twist that a pulsating tension drives in a laid rope."""
     scene = run.model.scene
+    _refuse_sag(run.model)
     if not _is_laid(scene) or not isinstance(scene.tension, Tension):
         return solve(run)
     _refuse_stretching(scene)
@@ -51,7 +52,8 @@ def turned(run: Run, solve: Callable[[Run], History]) -> History:
 
 
 def refuse_steady(asked: SteppedSine) -> None:
-    """Refuse a steady state to which the tension's own twist would belong."""
+    """Refuse a steady state to which what the tension drives by itself would belong."""
+    _refuse_sag(asked.model)
     scene = asked.model.scene
     if not _is_laid(scene) or not isinstance(scene.tension, Tension):
         return
@@ -61,6 +63,15 @@ def refuse_steady(asked: SteppedSine) -> None:
         raise SceneError(
             f"frequency must not be that of the pulsating tension, {scene.tension.frequency!r} Hz, "
             f"{WHY}: what it drives by itself is no response to the drive"
+        )
+
+
+def _refuse_sag(model: Compiled) -> None:
+    tension = model.scene.tension
+    if model.chain.sag is not None and isinstance(tension, Tension) and tension.pulsates:
+        raise SceneError(
+            "gravity must be None or without sag where the tension pulsates: the sag would pulsate "
+            f"with it, got {model.scene.gravity}"
         )
 
 

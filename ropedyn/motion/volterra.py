@@ -245,11 +245,12 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
 
 
 def _first(run: Run) -> int:
-    """Return how many steps a first run takes: the second as many in each of even times."""
+    """Return how many steps a first run takes: it or the second as many in each of even times."""
     times = len(run.time) - 1
     highest = max((force.highest for force in run.forces), default=0.0)
     least = max(FIRST, 4 * math.ceil(highest * float(run.time[-1] - run.time[0])))
-    return -(-times * -(-least // times) // 2) if is_even(run.time) else max(least, times) // 2
+    steps = times * -(-least // times) if is_even(run.time) else max(least, times)
+    return steps if steps % 2 else steps // 2
 
 
 def _unknown(run: Run, tolerance: float, count: int, known: Moved) -> SolveError:

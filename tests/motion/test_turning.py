@@ -183,3 +183,16 @@ def test_a_steady_state_at_the_frequency_of_the_tension_is_refused():
     asked = {"drive": ("z", 0.3), "amplitude": 1.0, "response": ("alpha", LENGTH)}
     with pytest.raises(rd.SceneError, match="frequency must not be that of the pulsating tension"):
         model.stepped_sine([60.0, 83.0], **asked)
+
+
+def test_a_sag_that_would_pulsate_with_the_tension_is_refused_by_name():
+    rope = rd.Rope(20.0, 1.0, axial_stiffness=6e6)
+    tension = rd.Tension(3000.0, amplitude=300.0, frequency=0.05)
+    of = rd.Scene(rope, tension=tension, damping=rd.ViscousDamping(1.0), gravity=rd.Gravity())
+    model, asked = of.compile(elements=16), {"drive": ("z", 10.0), "response": ("z", 10.0)}
+    with pytest.raises(rd.SceneError, match="gravity must be None or without sag"):
+        model.transient(TIME, force=rd.Step(1.0), **asked)
+    with pytest.raises(rd.SceneError, match="gravity must be None or without sag"):
+        model.stepped_sine([0.3], amplitude=1.0, **asked)
+    flat = of.without("sag").compile(elements=16)
+    assert np.isfinite(flat.transient(TIME, force=rd.Step(1.0), **asked).value).all()

@@ -11,7 +11,7 @@ from ...scene.force import Chirp, Force, Samples, Sum
 from ..modal.chirp import chirp_between, follow
 from ..modal.convolution import SinePiece, pieces
 from ..modal.exponentials import ramp
-from .grid import Grid, is_even
+from .grid import MOST, ROUNDED, Grid, is_even
 
 ORDER = 16  # The highest of rates of one order over the lowest.
 SPREAD = 7  # Terms of a jump spread over 1/omega.
@@ -101,10 +101,22 @@ def _of_hats(force: Samples, grid: Grid) -> Complex:
     time, sample, s = force.time - grid.begin, force.sample, grid.s
     h, left = float(time[-1] - time[0]) / (len(time) - 1), float(grid.period - time[-1])
     z = s * h
-    hats = (np.sinh(z / 2) / (z / 2)) ** 2 * grid.exponentials(time, sample, range(len(s)))
+    hats = (np.sinh(z / 2) / (z / 2)) ** 2 * _of_blows(force, grid)
     # half of one at the first; after the last the force goes to 0 on a straight line
     last = sample[-1] * np.exp(-s * time[-1]) * (left * ramp(-s * left) - h * ramp(-z))
     return np.asarray(h * (hats - sample[0] * ramp(z)) + last)
+
+
+def _of_blows(force: Samples, grid: Grid) -> Complex:
+    """Transform even samples as blows: at once where they stand on even steps that the grid has."""
+    time, steps = force.time - grid.begin, len(force.time) - 1
+    ends, both = [0, -1], math.lcm(steps, grid.steps)
+    alike = np.allclose(force.time[ends], grid.time[ends], rtol=4 * ROUNDED, atol=0.0)
+    if not alike or both > MOST:
+        return grid.exponentials(time, force.sample, range(len(grid.s)))
+    blow = np.zeros(grid.count * (both // grid.steps))
+    blow[: both + 1 : both // steps] = force.sample * np.exp(-grid.a * time)
+    return np.resize(np.fft.fft(blow), len(grid.s))
 
 
 def _of_corners(force: Samples, grid: Grid) -> Complex:
