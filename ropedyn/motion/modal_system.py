@@ -88,7 +88,7 @@ def modal_system(model: Compiled, number: int | None) -> ModalSystem:
     # exact for what the modes span. Of tensed elements Gamma is the derivative of their stiffness,
     # which is not quite a straight line of the tension; the rest vanishes with the mesh.
     _refuse(model)
-    parts = [_of_component(model, component, number) for component in transverse(model)]
+    parts = [_reduced(model, c, _Basis.of(model, c, number)) for c in transverse(model)]
     there = sum(len(part.eigenvalue) for part in parts)
     if number is not None and there < number:
         raise SolveError(
@@ -112,12 +112,8 @@ def _together(parts: Sequence[ModalSystem], number: int | None) -> ModalSystem:
     return ModalSystem(value, geometric, damping).only(np.argsort(value, kind="stable")[:number])
 
 
-def _of_component(model: Compiled, component: tuple[str, ...], number: int | None) -> ModalSystem:
-    """Return the modes of one component."""
-    return _reduced(model, component, _Basis.of(model, component, number))
-
-
 def _reduced(model: Compiled, component: tuple[str, ...], basis: _Basis) -> ModalSystem:
+    """Return the modes of one component."""
     half = np.linalg.inv(np.linalg.cholesky(basis.mass))
     geometric = _cut(half @ basis.geometric @ half.T)
     damping = half @ _damping(model, basis) @ half.T + _modal(model, component, basis.eigenvalue)

@@ -117,7 +117,7 @@ def _answers(question: Question) -> list[Array] | None:
     rough = 16 * EPS if any(locate(x, p[1])[1] is not None for p in points) else 0.0
     watched = np.concatenate([told.node, told.node + 1])
     local, found = inside_elements(question), []
-    still = [_stands(chain, places, component, p) for p in question.responses]
+    still = [not is_force(p) and is_held(chain, places, component, p) for p in question.responses]
     asked = Pushed(Loads.of(pushed), watched, rough)
     for fields, random in _perturbed(wide, chain, _factors(question), asked):
         if fields is None:
@@ -150,7 +150,8 @@ def _perturbed(
     yield respond(chain, as_real(factor), unit, loads, asked.watched), None
     for seed in SEEDS:
         random = np.random.default_rng(seed)
-        own, off = wide.moved(chain, seed), _moved_factors(factor, random)
+        own, ones = wide.moved(chain, seed), np.ones((len(factor), 1), dtype=Number)
+        off = factor * moved(ones, FINE, random)  # the same at all lines
         z = unit * rescaled(random, len(unit))
         push = loads._replace(row=moved(loads.row, asked.rough, random))
         yield respond(own, as_real(off), z, push, asked.watched), random
@@ -200,11 +201,6 @@ def measured_at_rest(
     return AtRest(u, force, *noise)
 
 
-def _moved_factors(factor: Array, random: np.random.Generator) -> Array:
-    """Return factors with relative errors, the same at all lines."""
-    return factor * moved(np.ones((len(factor), 1), dtype=Number), FINE, random)
-
-
 def _factors(question: Question) -> Array:
     """Return the factors in wide numbers."""
     scene = question.model.scene
@@ -213,11 +209,6 @@ def _factors(question: Question) -> Array:
         return factors_of(scene, question.frequency, question.decay)
     # those that are not of a frequency are what is asked for as they are
     return question.factor.astype(np.result_type(Number, np.complex64))
-
-
-def _stands(chain: Chain, x: Real, component: tuple[str, ...], point: Point) -> bool:
-    """Whether a point cannot move."""
-    return not is_force(point) and is_held(chain, x, component, point)
 
 
 def _read(question: Question, x: Array, found: NodeFields, told: Ports) -> Array:

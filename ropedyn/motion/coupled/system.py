@@ -55,13 +55,13 @@ class CoupledSystem(LawSystem):
         looks: Sequence[OutputTimes],
     ) -> CoupledSystem:
         """Find the modes of a chain, in one plane or both, and what couples them."""
-        model = run.model
+        model, rope = run.model, run.model.scene.rope
         drive = [k for k, p in enumerate(run.places) if moving(p) in component]
         places = [run.places[k] for k in drive]
         acting = acting_laws(model, component)
         refuse_points(model, [*places, *(one.point for one in acting)], outputs, run.order)
         modes, varies = AllModes.of(model, component), tension_of(model, component)
-        count = len(modes.sigma)
+        count, stretches = len(modes.sigma), varies is not None and varies.stretching
         seen, swept, pulled = modes.rows(outputs)
         seen = np.concatenate([np.eye(count), seen])
         swept = np.concatenate([np.zeros((count, count)), swept])
@@ -83,7 +83,7 @@ class CoupledSystem(LawSystem):
             pulled=pulled,
             form=modes.form,
             coupling=modes.coupling,
-            stretching=_stretching(model) if varies and varies.stretching else 0.0,
+            stretching=(rope.axial_stiffness or 0.0) / rope.length if stretches else 0.0,
             pulsation=varies.pulsation if varies and varies.pulsates else None,
             pulsates_at=varies.frequency if varies and varies.pulsates else 0.0,
         )
@@ -128,10 +128,6 @@ class CoupledSystem(LawSystem):
         """Return what internal forces feel of the tension beside its mean, (outputs, t)."""
         bent = np.einsum("kt,kl,lt->t", Q, self.form, Q, optimize=True)
         return np.asarray((self.added(time) + self.stretching / 2 * bent) * (self.pulled @ Q))
-
-
-def _stretching(model: Compiled) -> float:
-    return (model.scene.rope.axial_stiffness or 0.0) / model.scene.rope.length
 
 
 def tension_of(model: Compiled, component: tuple[str, ...]) -> Tension | None:

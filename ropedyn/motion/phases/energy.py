@@ -19,7 +19,6 @@ from ...response.moved_end import is_end
 from ..history import Balance
 from ..request import Run
 from .components import Look, Moving, moving_components, rest
-from .phase import Contact
 from .pieces import pieces
 from .walk import PhaseWalk, Visit
 
@@ -123,12 +122,9 @@ def _stored(one: Moving, seen: _Seen) -> Real:
     strain += np.einsum("it,ij,jt->t", seen.force, st.now, seen.force) / 2
     stops = np.zeros_like(strain)
     for k, stop in enumerate(laws.contacts):
-        stops += _pressed(stop, seen.u[one.system.responses + k])
+        pressed = np.maximum(stop.side * seen.u[one.system.responses + k] - stop.gap, 0.0)
+        stops += stop.stiffness / 2 * pressed**2
     return np.stack([(seen.v**2).sum(axis=0) / 2, strain, stops])
-
-
-def _pressed(stop: Contact, u: Real) -> Real:
-    return np.asarray(stop.stiffness / 2 * np.maximum(stop.side * u - stop.gap, 0.0) ** 2)
 
 
 def _powers(one: Moving, visit: Visit, seen: _Seen) -> Real:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.array import Flags, Real
+from ...base.array import Real
 from ...base.errors import SolveError
 from .course import Course
 
@@ -90,7 +90,8 @@ def _within(g: _Guards, first: float, last: float, parts: int, depth: int) -> Cr
     h, v = g.value.on(power, time), g.slope.on(power, time)
     width = (last - first) / parts
     bend = g.bend.size(first, last)
-    for k in np.flatnonzero(~_safe(g, h, v, width, bend)):
+    safe = (_above(h, v, width, bend[:, None]) >= -g.floor[:, None]).all(axis=0)
+    for k in np.flatnonzero(~safe):
         lo, hi = float(time[k]), float(time[k + 1])
         falls = v[:, k : k + 2].max(axis=1) < -bend * width / 2  # throughout
         below = h[:, k + 1] < -g.floor
@@ -109,11 +110,6 @@ def _within(g: _Guards, first: float, last: float, parts: int, depth: int) -> Cr
         if found is not None:
             return found
     return None
-
-
-def _safe(g: _Guards, h: Real, v: Real, width: float, bend: Real) -> Flags:
-    """Say in which intervals every guard is above zero, shape (parts,)."""
-    return np.asarray((_above(h, v, width, bend[:, None]) >= -g.floor[:, None]).all(axis=0))
 
 
 def _stays(g: _Guards, first: float, width: float) -> bool:
