@@ -18,7 +18,6 @@ from ..base.reading import reading
 from ..base.unit import QUANTITIES, curve_unit, is_quantity
 from ..chain.port import Point
 from .curves import Curves
-from .files import Content
 from .files.formats import read
 
 ROWS = "response and frequency"
@@ -232,7 +231,8 @@ class Measured(Curves):
             },
         )
         with reading(path, "a whole file of responses"):
-            return cls(**_decayed(given, decay)._asdict())
+            given = given if decay is None else given._replace(decay=decay)
+            return cls(**given._asdict())
 
     def _noise_around(self, response: int) -> Real | None:
         return by_differences(self.value[response])
@@ -293,11 +293,6 @@ def above_zero(measured: Measured) -> Measured:
     if not lines.any():
         raise SceneError("measured must have lines above 0 Hz, got none")
     return lines_of(measured, lines)
-
-
-def _decayed(content: Content, decay: float | None) -> Content:
-    """Return the same with the decay of the user, where there is one."""
-    return content if decay is None else content._replace(decay=decay)
 
 
 def _points(given: Any, name: str) -> tuple[Any, ...]:

@@ -71,7 +71,8 @@ def measured(model: Compiled, component: tuple[str, ...], asked: SoughtRoots) ->
     chain, x = wide.chain.only(component), wide.x
     chain = chain.undamped if not np.iscomplexobj(asked.value) else chain
     if model.element in EXACT:
-        places = [x[:-1] + part * np.diff(x) for part in FRACTIONS if _is_continuous(model)]
+        places = [x[:-1] + part * np.diff(x) for part in FRACTIONS]
+        places = places if model.element == "continuous" else []
         inside = [float(at) for at in np.concatenate(places)] if places else []
         chain, x = cut(chain, x, [*inside, *stops(narrow(chain), x.astype(float))])
     size = np.abs(asked.value)
@@ -99,10 +100,6 @@ def measured(model: Compiled, component: tuple[str, ...], asked: SoughtRoots) ->
         told = (SURE * noise < np.maximum(asked.error[at], EPS * size[at])) & (off <= beside[at])
     found[at] = np.where(told, error, np.nan)
     return found
-
-
-def _is_continuous(model: Compiled) -> bool:
-    return model.element == "continuous"
 
 
 def _groups(value: Array, beside: Real) -> list[Index]:

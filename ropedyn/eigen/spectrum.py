@@ -164,7 +164,7 @@ def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> C
     wanted = _count(chain, limit) if number is None else number
     wanted = wanted if chain.finite is None else min(wanted, chain.finite)
     eigenvalue, error, certified, shape, motion, most, sweeps, redone = _core.certify(
-        chain, wanted, _upper(limit), shaped
+        chain, wanted, limit if limit < HIGHEST else math.inf, shaped
     )
     if chain.kind in (CONTINUOUS, TENSED):
         loss = 16 * (chain.section_loss - 1)
@@ -182,11 +182,6 @@ def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> C
         Work(sweeps, redone=redone),
         motion[:most] if shaped else None,
     )
-
-
-def _upper(limit: float) -> float:
-    """Return the limit as the core takes it: beyond all that is counted there is none."""
-    return limit if limit < HIGHEST else math.inf
 
 
 def _lapack(

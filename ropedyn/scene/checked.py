@@ -48,13 +48,9 @@ def checked_damping(damping: Any) -> Damping | tuple[Damping, ...] | None:
     if isinstance(damping, (tuple, list)):
         for i, one in enumerate(damping):
             check.instance(one, f"damping[{i}]", _damping.KINDS, names)
-        return _sum_of(tuple(damping))
+        # one term is itself, none is None
+        return tuple(damping) if len(damping) > 1 else (*damping, None)[0]
     raise TypeError(f"damping must be {names}, a tuple of them or None, got {check.shown(damping)}")
-
-
-def _sum_of(dampings: tuple[Damping, ...]) -> Damping | tuple[Damping, ...] | None:
-    """Return a sum as a scene holds it: one term is itself, none is None."""
-    return dampings if len(dampings) > 1 else (*dampings, None)[0]
 
 
 def checked_parts(parts: Any) -> tuple[Part | Stretch, ...]:

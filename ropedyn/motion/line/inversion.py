@@ -14,12 +14,13 @@ from functools import partial
 
 import numpy as np
 
+from ... import _core
 from ...base.array import Complex, Real
 from ...base.computed import computed
 from ...base.errors import SceneError, SolveError
 from ...base.unit import MOTIONS
+from ...chain.compiled import part_of
 from ...eigen.damped.rates import Rates
-from ...eigen.spectrum import count_component
 from ...scene import damping
 from ...scene.force import Force, Step, is_sampled
 from ..modal.convolution import convolve
@@ -37,10 +38,12 @@ SHARES = {0.5: 1.2, 0.7: 2.8, 0.85: 4.0}
 """Sums that end at this part of the rates tell the error, so many times over,"""
 AROUND = 4  # where they differ most within so many steps.
 SHARP = 20  # p.
-TIMES = 2.0  # What images make is told so many times over.
+TIMES = 2.0  # What modes beyond the rates do is told so many times over.
 LAST = 8  # What is left beyond the rates is told by the last of so many parts of them.
 FADED = 0.8  # Modes beyond this part of the highest rate are not summed in full: what they do is
-WIDTH = 0.01  # looked for in steps of this part of their rates.
+WIDTH = 0.01  # looked for in steps of this part of their rates,
+PARTS, CLOSER = 10, 2  # and in so many parts of them, so many times over, where there are several
+CROWDED = 64  # in at most so many steps.
 DEAD = 0.3  # Modes beyond the rates whose stiffness lags by more [rad] do not ring.
 ALIAS = 8.0  # A period later motion may be so much larger,
 GROWN = 2.0  # where it grows by at most so much after the record.
@@ -127,7 +130,7 @@ class Line:
         alias = ALIAS * self.grid.decay * later
         # modes beyond the rates, where none is near their end, are seen by what they do there
         last = np.median(np.abs(smooth[:, -(grid.lines // LAST) :]), axis=1)
-        alias += grid.omega / math.pi * last + self._unseen() + TIMES * self._images()
+        alias += grid.omega / math.pi * last + TIMES * (self._unseen() + self._images())
         error = differ + alias[:, None] + self._at_jumps(fast)
         return Moved(value, error, "line", lines=grid.lines)
 
@@ -219,19 +222,34 @@ class Line:
         if not self._is_chain or lag > DEAD or run.model.chain.spurious:
             # modes of spans are dense, damped ones over at once, and some of no motion are counted
             return np.zeros(len(run.responses))
-        rates = self._after(FADED * omega)
-        moved = np.abs(self._rest(np.asarray((1j + WIDTH) * rates)))
+        edges = self._after(FADED * omega)
+        step, rates = np.diff(edges), edges[:-1]
+        moved = np.abs(self._rest(np.asarray(1j * rates + step)))
         rung = np.stack([excited(one, run.time, rates)[run.order] for one in self.forces])
-        return np.asarray(2 / math.pi * WIDTH * np.einsum("dk,drk->r", rung, moved))
+        return np.asarray(2 / math.pi * np.einsum("k,dk,drk->r", step / rates, rung, moved))
 
     def _after(self, omega: float) -> Real:
-        """Return rates from one on until no mode of a chain is left."""
-        model, far = self.run.model, (self._end * self.grid.omega) ** 2
-        every = {each: count_component(model, each, far) for each in model.components}
-        top = omega
-        while any(count_component(model, each, top**2) < every[each] for each in every):
-            top *= 2
-        return np.asarray(omega * np.exp(np.arange(0.0, math.log(top / omega), WIDTH)))
+        """Return rates from one on until no mode of a chain is left, in steps for one each."""
+        model = self.run.model
+        parts = [part_of(model, each) for each in model.components]
+
+        def below(rate: Real) -> Real:
+            return np.asarray(sum(_core.count(part, rate**2) for part in parts))
+
+        end = math.log(self._end * self.grid.omega / omega)
+        rates = omega * np.exp(np.arange(0.0, end, math.log(2.0)))
+        count = below(rates)
+        top = math.log(rates[np.argmax(count == count[-1])] / omega)
+        rates = omega * np.exp(np.arange(0.0, top + WIDTH, WIDTH))
+        for _ in range(CLOSER):
+            crowded = np.diff(below(rates)) > 1
+            if not 0 < crowded.sum() <= CROWDED:
+                break
+            many = np.where(crowded, PARTS, 1)
+            part = np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many)
+            inner = np.repeat(rates[:-1], many) + part * np.repeat(np.diff(rates) / many, many)
+            rates = np.append(inner, rates[-1])
+        return rates
 
     def _images(self) -> Real:
         """Return what corners between samples ring beyond the rates, (responses,)."""
