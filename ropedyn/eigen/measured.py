@@ -71,9 +71,8 @@ def measured(model: Compiled, component: tuple[str, ...], asked: SoughtRoots) ->
     chain, x = wide.chain.only(component), wide.x
     chain = chain.undamped if not np.iscomplexobj(asked.value) else chain
     if model.element in EXACT:
-        places = [x[:-1] + part * np.diff(x) for part in FRACTIONS]
-        places = places if model.element == "continuous" else []
-        inside = [float(at) for at in np.concatenate(places)] if places else []
+        fractions = FRACTIONS if model.element == "continuous" else ()
+        inside = [float(at) for part in fractions for at in x[:-1] + part * np.diff(x)]
         chain, x = cut(chain, x, [*inside, *stops(narrow(chain), x.astype(float))])
     size = np.abs(asked.value)
     beside = np.maximum(BESIDE * size, WIDER * asked.error)

@@ -163,6 +163,7 @@ def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> C
         return ComponentModes(*found, None, True, Work())
     wanted = _count(chain, limit) if number is None else number
     wanted = wanted if chain.finite is None else min(wanted, chain.finite)
+    # beyond all that is counted there is no limit
     eigenvalue, error, certified, shape, motion, most, sweeps, redone = _core.certify(
         chain, wanted, limit if limit < HIGHEST else math.inf, shaped
     )

@@ -142,9 +142,8 @@ class Line:
         wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
         # transforms are rounded as those of forces that do not alternate
         most = np.array([np.abs(one.value(self.run.time)).max() for one in self.forces])
-        wrong += np.einsum("d,drk->rk", EPS / 4 * most, np.abs(self.value)) * np.abs(grid.s) ** (
-            self.run.order - 1
-        )
+        unsure = EPS / 4 * np.multiply.outer(most, np.abs(grid.s) ** (self.run.order - 1))
+        wrong += np.einsum("drk,dk->rk", np.abs(self.value), unsure)
         wrong = np.sqrt((wrong**2).sum(axis=1)) / grid.period
         grown = np.exp(grid.a * (self.run.time - grid.begin))
         return moved._replace(error=moved.error + np.multiply.outer(wrong, grown))
