@@ -19,8 +19,6 @@ SCHEMA = "ropedyn.tension/1"
 PREFIXES = {-9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 CAUSES = {"ends": "ends unknown"}
 """Words for causes that are none themselves."""
-NEXT = 3
-"""So many other numberings are named at most."""
 
 
 def report_of(fit: Fit) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.array import Complex, Real
 from ...scene.force import Chirp, Force, Samples, Sum
-from ..modal.chirp import chirp_between, follow
+from ..modal import chirp
 from ..modal.convolution import SinePiece, pieces
 from ..modal.exponentials import ramp
 from .grid import MOST, ROUNDED, Grid, is_even
@@ -26,7 +26,7 @@ def transform(force: Force, grid: Grid) -> Complex:
             return _of_samples(force, grid)
         return (_of_hats if is_even(force.time, 0.0) else _of_corners)(force, grid)
     if isinstance(force, Chirp):
-        return _of_chirp(force, grid)
+        return chirp.transform(force, grid.s, grid.begin, grid.begin + grid.period)
     turns = pieces(force, grid.begin)
     return _of_sines([one for one in turns if one.start <= grid.time[-1]], grid)
 
@@ -48,20 +48,6 @@ def _of_sines(turns: list[SinePiece], grid: Grid) -> Complex:
             value, rate = (float(piece.value(at, k)[0]) for k in range(2))
             total -= np.exp(-s * (following.start - grid.begin)) * (value * s + rate) / both
     return total
-
-
-def _of_chirp(force: Chirp, grid: Grid) -> Complex:
-    """Transform a chirp: what it does to a motion e^(s t) by its end, undone."""
-    end = min(force.duration, grid.begin + grid.period)
-    if end <= grid.begin:
-        return np.zeros(len(grid.s), dtype=np.complex128)
-    now = chirp_between(force, grid.begin, end)
-    if now.is_steady:
-        w, f = now.frequency, now.amplitude
-        swing = w, f * np.sin(now.phase), f * np.cos(now.phase)
-        return _of_sines([SinePiece(grid.begin, *swing), SinePiece(end)], grid)
-    whole = follow(grid.s, now, np.array([now.span]))[:, 0]
-    return np.asarray(np.exp(-grid.s * now.span) * whole)
 
 
 def _of_samples(force: Samples, grid: Grid) -> Complex:

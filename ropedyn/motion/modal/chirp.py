@@ -25,11 +25,6 @@ class Chirping(NamedTuple):
     growth: float  # [rad/s^2]
     span: float  # How long it is asked for [s]
 
-    @property
-    def is_steady(self) -> bool:
-        """Whether it is a sine, up to rounding."""
-        return abs(self.growth) * self.span**2 < STEADY
-
     def value(self, t: Real, order: int) -> Real:
         """Return it at times [s], `order` times differentiated."""
         angle = self.phase + (self.frequency + self.growth * t / 2) * t
@@ -49,6 +44,16 @@ def chirp_between(force: Chirp, begin: float, end: float) -> Chirping:
     angle = 2 * math.pi * (force.start + rate * begin / 2) * begin + force.phase
     w = 2 * math.pi * (force.start + rate * begin)
     return Chirping(force.amplitude, angle, w, 2 * math.pi * rate, end - begin)
+
+
+def transform(force: Chirp, s: Complex, begin: float, end: float) -> Complex:
+    """Return the integral of a chirp times e^(-s (t - begin)) between two times."""
+    span = min(end, force.duration) - begin
+    if span <= 0:
+        return np.zeros(len(s), dtype=np.complex128)
+    # what it does to a motion e^(s t) by its end, undone
+    moved = follow(s, chirp_between(force, begin, begin + span), np.array([span]))[:, 0]
+    return np.asarray(np.exp(-s * span) * moved)
 
 
 def under_chirp(
@@ -90,7 +95,8 @@ def _follow_turning(rate: Complex, force: Chirping, t: Real) -> Complex:
     change = (np.abs(1j * force.frequency - rate) + force.growth * force.span) * force.span
     smooth = change < SMOOTH
     turning[smooth] = _by_gauss(rate[smooth, None], force, t)
-    turning[~smooth] = _by_faddeeva(rate[~smooth, None], force, t)
+    by = _by_sine if force.growth * force.span**2 < STEADY else _by_faddeeva
+    turning[~smooth] = by(rate[~smooth, None], force, t)
     return turning * np.exp(1j * force.phase)
 
 
@@ -100,6 +106,11 @@ def _by_gauss(s: Complex, force: Chirping, t: Real) -> Complex:
         angle = (force.frequency + force.growth * x * t / 2) * x * t
         total += weight * np.exp(s * ((1 - x) * t) + 1j * angle)
     return total * t
+
+
+def _by_sine(s: Complex, force: Chirping, t: Real) -> Complex:
+    turn = 1j * force.frequency
+    return np.asarray((np.exp(turn * t) - np.exp(s * t)) / (turn - s))
 
 
 def _by_faddeeva(s: Complex, force: Chirping, t: Real) -> Complex:

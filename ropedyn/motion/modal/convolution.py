@@ -86,9 +86,6 @@ def _chirp(modes: Oscillators, rest: Real, force: Chirp, time: Real, order: int)
     if begin >= end:
         return np.zeros((len(rest), len(time)))
     now = chirp_between(force, begin, min(end, float(time[-1])))
-    if now.is_steady:
-        turns = [_sine(begin, now.frequency, now.amplitude, now.phase), SinePiece(end)]
-        return _sines(modes, rest, turns, time, order)
     last = np.searchsorted(time, end)
     value = np.zeros((len(rest), len(time)))
     value[:, :last], q, v = under_chirp(modes, rest, now, time[:last] - begin, order)
