@@ -70,13 +70,18 @@ def count_component(model: Compiled, component: tuple[str, ...], limit: float) -
     return 0 if limit < least_of(model, component) else _count(part_of(model, component), limit)
 
 
+def numbers_below(chain: Chain, eigenvalue: Real) -> Real:
+    """Count the eigenvalues of a component below each of many, NaN where waves are too short."""
+    return _core.count(chain, np.minimum(eigenvalue, HIGHEST))
+
+
 def _count(chain: Chain, limit: float) -> int:
     """Count the eigenvalues of a component below a limit."""
     limit = min(limit, HIGHEST)
     found = closed_count(chain, limit)
     if found is not None:
         return found
-    count = float(_core.count(chain, np.array([limit]))[0])
+    count = float(numbers_below(chain, np.array([limit]))[0])
     if math.isnan(count):
         raise SolveError("the waves at the limit are too short to be counted")
     return int(count)

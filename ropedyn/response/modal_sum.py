@@ -19,13 +19,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import _core
 from ..base.array import Complex, Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.compiled import Compiled
 from ..chain.port import Point, is_force
 from ..chain.tip import is_tip
-from ..eigen.spectrum import HIGHEST, count_component, spectrum
+from ..eigen.spectrum import HIGHEST, count_component, numbers_below, spectrum
 from ..scene import damping
 from .moved_end import refuse_moved_ends
 from .question import Bound, Question, Solver
@@ -213,7 +212,7 @@ def numbered_ratios(
     number = np.arange(len(eigenvalue))
     for other in model.components:
         if other != component:
-            below = _core.count(model.chain.only(other), np.minimum(eigenvalue, HIGHEST))
+            below = numbers_below(model.chain.only(other), eigenvalue)
             number = number + below.astype(np.intp)
     every = damping.ratios(model.scene.dampings, int(number.max(initial=-1)) + 1)
     return number, every[number]

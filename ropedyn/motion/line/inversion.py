@@ -14,12 +14,10 @@ from functools import partial
 
 import numpy as np
 
-from ... import _core
 from ...base.array import Complex, Real
 from ...base.computed import computed
 from ...base.errors import SceneError, SolveError
 from ...base.unit import MOTIONS
-from ...chain.compiled import part_of
 from ...eigen.damped.rates import Rates
 from ...scene import damping
 from ...scene.force import Force, Step, is_sampled
@@ -28,10 +26,11 @@ from ..modal.expansion import Expansion
 from ..moved import Moved
 from ..request import Run
 from .at_once import LOOKS, at_once, at_once_by, response
+from .beyond import Beyond
 from .force_transform import transform
 from .grid import LEAST, Grid, off
 from .images import ringing
-from .jumps import excited, jumps, largest
+from .jumps import jumps, largest
 from .transfer import TransferFunctions
 
 SHARES = {0.5: 1.2, 0.7: 2.8, 0.85: 4.0}
@@ -40,10 +39,7 @@ AROUND = 4  # where they differ most within so many steps.
 SHARP = 20  # p.
 TIMES = 2.0  # What modes beyond the rates do is told so many times over.
 LAST = 8  # What is left beyond the rates is told by the last of so many parts of them.
-FADED = 0.8  # Modes beyond this part of the highest rate are not summed in full: what they do is
-WIDTH = 0.01  # looked for in steps of this part of their rates,
-PARTS, CLOSER = 10, 2  # and in so many parts of them, so many times over, where there are several
-CROWDED = 64  # in at most so many steps.
+FADED = 0.8  # Modes beyond this part of the highest rate are not summed in full.
 DEAD = 0.3  # Modes beyond the rates whose stiffness lags by more [rad] do not ring.
 ALIAS = 8.0  # A period later motion may be so much larger,
 GROWN = 2.0  # where it grows by at most so much after the record.
@@ -89,6 +85,7 @@ class Line:
     transfer: TransferFunctions
     forces: tuple[Force, ...]
     grid: Grid
+    beyond: Beyond  # what is beyond the least of the highest rates
     value: Complex  # (drives, responses, lines + 1)
     parts: tuple[slice, ...]  # of the lines, one after another, that were looked at together
 
@@ -103,7 +100,10 @@ class Line:
         least = least if tolerance > FINE else FIRST
         transfer = run.look(tuple(run.places), run.responses)
         grid = Grid.over(run.time, tolerance, transfer.growth, omega, least)
-        return cls(run, transfer, forces, grid, transfer.at(grid.s), (slice(0, len(grid.s)),))
+        end = max(FAR / grid.finer, LEAST_FAR)
+        beyond = Beyond(run, transfer, FADED * grid.omega, end * grid.omega)
+        parts = (slice(0, len(grid.s)),)
+        return cls(run, transfer, forces, grid, beyond, transfer.at(grid.s), parts)
 
     def further(self, times: int) -> Line:
         """Look so many times as far."""
@@ -122,7 +122,7 @@ class Line:
     def motion(self) -> Moved:
         """Return the motion, its error without rounding."""
         grid, run, order = self.grid, self.run, self.run.order
-        fast, _, smooth = self._smooth
+        fast, *_, smooth = self._smooth
         value, differ, later = self._summed(smooth)
         value += self._resting()
         for d, one in enumerate(self.forces):
@@ -136,9 +136,9 @@ class Line:
 
     def rounded(self, moved: Moved) -> Moved:
         """Return the motion with what rounding adds to its error."""
-        grid, (fast, force, _) = self.grid, self._smooth
+        grid, (_, held, force, _) = self.grid, self._smooth
         parts = [_rounding(self.transfer, grid.s[k], self.value[..., k]) for k in self.parts]
-        wrong = np.concatenate(parts, axis=2) + EPS * np.abs(response(fast, grid.s))
+        wrong = np.concatenate(parts, axis=2) + EPS * np.abs(held)
         wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
         # transforms are rounded as those of forces that do not alternate
         most = np.array([np.abs(one.value(self.run.time)).max() for one in self.forces])
@@ -149,14 +149,14 @@ class Line:
         return moved._replace(error=moved.error + np.multiply.outer(wrong, grown))
 
     @computed
-    def _smooth(self) -> tuple[Expansion, Complex, Complex]:
-        """What the transfer functions do at once, the forces, and the motion without it."""
+    def _smooth(self) -> tuple[Expansion, Complex, Complex, Complex]:
+        """What transfer functions do at once, also at the rates, forces, and motion without it."""
         looked = self._far[..., : len(LOOKS)]
         fast = at_once(looked, self.grid.omega, self.value[..., 0])
         force = np.stack([transform(one, self.grid) for one in self.forces])
         force *= self.grid.s**self.run.order
-        rest = self.value - response(fast, self.grid.s)
-        return fast, force, np.einsum("drk,dk->rk", rest, force)
+        held = response(fast, self.grid.s)
+        return fast, held, force, np.einsum("drk,dk->rk", self.value - held, force)
 
     def _at_jumps(self, fast: Expansion) -> Real:
         """Bound what is wrong at the instant when something jumps on a chain, (responses, t).
@@ -194,15 +194,12 @@ class Line:
         return self.run.model.element != "continuous"
 
     @property
-    def _end(self) -> float:
-        """So many times the highest rate no mode of a chain is left."""
-        return max(FAR / self.grid.finer, LEAST_FAR)
-
-    @property
     def _beyond(self) -> Complex:
         """Rates beyond the highest, the last two where modes of a chain are over."""
-        some = [LOOKS, self._end * LOOKS[-2:]] if self._is_chain else [LOOKS]
-        return np.asarray(self.grid.omega * np.concatenate(some), dtype=np.complex128)
+        omega = self.grid.omega
+        end = np.array([max(self.beyond.last, LEAST_FAR * omega)] * self._is_chain)
+        looks = np.append(omega * LOOKS, np.multiply.outer(end, LOOKS[-2:]))
+        return np.asarray(looks, dtype=np.complex128)
 
     @computed
     def _far(self) -> Complex:
@@ -221,47 +218,20 @@ class Line:
         if not self._is_chain or lag > DEAD or run.model.chain.spurious:
             # modes of spans are dense, damped ones over at once, and some of no motion are counted
             return np.zeros(len(run.responses))
-        edges = self._after(FADED * omega)
-        step, rates = np.diff(edges), edges[:-1]
-        moved = np.abs(self._rest(np.asarray(1j * rates + step)))
-        rung = np.stack([excited(one, run.time, rates)[run.order] for one in self.forces])
-        return np.asarray(2 / math.pi * np.einsum("k,dk,drk->r", step / rates, rung, moved))
-
-    def _after(self, omega: float) -> Real:
-        """Return rates from one on until no mode of a chain is left, in steps for one each."""
-        model = self.run.model
-        parts = [part_of(model, each) for each in model.components]
-
-        def below(rate: Real) -> Real:
-            return np.asarray(sum(_core.count(part, rate**2) for part in parts))
-
-        end = math.log(self._end * self.grid.omega / omega)
-        rates = omega * np.exp(np.arange(0.0, end, math.log(2.0)))
-        count = below(rates)
-        top = math.log(rates[np.argmax(count == count[-1])] / omega)
-        rates = omega * np.exp(np.arange(0.0, top + WIDTH, WIDTH))
-        for _ in range(CLOSER):
-            crowded = np.diff(below(rates)) > 1
-            if not 0 < crowded.sum() <= CROWDED:
-                break
-            many = np.where(crowded, PARTS, 1)
-            part = np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many)
-            inner = np.repeat(rates[:-1], many) + part * np.repeat(np.diff(rates) / many, many)
-            rates = np.append(inner, rates[-1])
-        return rates
+        return self.beyond.ringing(FADED * omega, self._smooth[0], self.forces)
 
     def _images(self) -> Real:
         """Return what corners between samples ring beyond the rates, (responses,)."""
         found = np.zeros(len(self.run.responses))
         for d, one in enumerate(self.forces):
             if is_sampled(one):
-                follow = partial(self._rest, drive=d)
-                found += ringing(one, self.grid, self.run.order, follow)
+                found += ringing(one, self.grid, self.run.order, partial(self._rest, drive=d))
         return found
 
-    def _rest(self, s: Complex, drive: int | slice = slice(None)) -> Complex:
+    def _rest(self, s: Complex, drive: int) -> Complex:
         """Return what a drive moves but for what is there at once, (responses, n)."""
-        return np.asarray(self.transfer.at(s)[drive] - response(self._smooth[0], s)[drive])
+        alone = self.run.look((self.run.places[drive],), self.run.responses)
+        return np.asarray(alone.at(s)[0] - response(self._smooth[0], s)[drive])
 
     def refuse_infinite(self, moved: Moved) -> None:
         """Refuse by name what has no bound, as velocity where a blow at an instant hits a beam."""
@@ -336,7 +306,7 @@ class Line:
         twice = replace(grid, count=2 * grid.count, a=slower, finer=1)
         line = replace(self, grid=twice, value=self.transfer.at(twice.s))
         ends = np.exp(-36 * np.linspace(0.0, 1.0, twice.lines + 1) ** SHARP)
-        after = np.abs(twice.finely(line._smooth[2] * ends))[:, twice.lines :]
+        after = np.abs(twice.finely(line._smooth[-1] * ends))[:, twice.lines :]
         return np.maximum(most, after.max(axis=1))
 
 
