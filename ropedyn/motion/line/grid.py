@@ -131,9 +131,14 @@ class Grid:
         """Return the motion of spectra at so many even times of the period, (.., 2 lines)."""
         from scipy.fft import irfft
 
+        return np.asarray(self._growth * irfft(spectrum, 2 * self.lines, axis=-1))
+
+    @computed
+    def _growth(self) -> Real:
+        """What these times make of sums of e^(2 pi i k t/P)/(2 lines)."""
         count = 2 * self.lines
-        growth = np.exp(self.a * self.period / count * np.arange(count)) * (count / self.period)
-        return np.asarray(growth * irfft(spectrum, count, axis=-1))
+        step = self.period / count
+        return np.asarray(np.exp(self.a * step * np.arange(count)) / step)
 
 
 def _digits(numbers: range) -> tuple[Index, Index]:

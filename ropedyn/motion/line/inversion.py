@@ -270,11 +270,10 @@ class Line:
         from scipy.ndimage import maximum_filter1d
 
         grid = self.grid
-        share = np.arange(grid.lines + 1) / grid.lines
+        share = (np.arange(grid.lines + 1) / grid.lines) ** SHARP
         # one by one: rounding would depend on how many are transformed together
         whole, *earlier = (
-            grid.finely(smooth * np.exp(-36 * np.minimum(share / end, 2.0) ** SHARP))
-            for end in (1.0, *SHARES)
+            grid.finely(smooth * np.exp(-36 / end**SHARP * share)) for end in (1.0, *SHARES)
         )
         apart = (times * np.abs(one - whole) for one, times in zip(earlier, SHARES.values()))
         differ = np.max(list(apart), axis=0)
@@ -291,7 +290,7 @@ class Line:
             goes = off(grid.time) * np.abs(np.diff(value, axis=1)).max(axis=1, keepdims=True)
             return value, differ[:, even] + goes, later
         at = np.rint(since * (2 * grid.lines / grid.period)).astype(np.intp)
-        ended = smooth * np.exp(-36 * share**SHARP)
+        ended = smooth * np.exp(-36 * share)
         return grid.summed(ended, since), differ[:, at], later
 
     def _later(self, size: Real, differ: Real) -> Real:

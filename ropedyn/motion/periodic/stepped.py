@@ -203,26 +203,18 @@ class Path:
             return self._begun(frequency)
         if heading != self.heading:
             self._head(heading)
-        fallen = False
+        fallen, asked = False, 2 * np.pi * self.driven.asked.frequency
         for _ in range(STEPS):
             x = self._crossing(omega)
             if x is not None and (not fallen or self._catches(x, omega)):
                 self.x, self.now = x, omega
                 return x
             reached = self.piece[1].p
-            if not self._least / WAY <= reached <= self._most * WAY:
+            if not asked.min() / WAY <= reached <= asked.max() * WAY:
                 break
             self._step()
             fallen |= not self._ahead
         return self._begun(frequency)
-
-    @property
-    def _least(self) -> float:
-        return 2 * np.pi * float(self.driven.asked.frequency.min())
-
-    @property
-    def _most(self) -> float:
-        return 2 * np.pi * float(self.driven.asked.frequency.max())
 
     @property
     def _ahead(self) -> bool:
