@@ -47,10 +47,12 @@ static void unfold(double _Complex P, double _Complex growth, struct rd_krylov *
     k->c[3] = (S - s) / (2 * P * P * P);
 }
 
-/* p = -4 x^4 */
+/* p = -4 x^4; cos x and sin x take their own part of the growth */
 static void fold(double _Complex x, double _Complex growth, struct rd_krylov *k)
 {
-    const double _Complex C = even(x, growth), S = odd(x, growth), c = ccos(x), s = csin(x);
+    const double turning = fabs(cimag(x));
+    const double _Complex C = even(x, growth - turning), S = odd(x, growth - turning);
+    const double _Complex c = even(I * x, turning), s = odd(I * x, turning) / I;
     k->c[0] = c * C;
     k->c[1] = (c * S + s * C) / (2 * x);
     k->c[2] = s * S / (2 * x * x);
@@ -101,5 +103,8 @@ double _Complex rd_krylov_growth(double _Complex p)
 {
     if (cabs(p) <= SMALL)
         return 0;
-    return creal(p) < 0 ? fourth_root(-p / 4) - 2 : fourth_root(p) - sqrt(sqrt(SMALL));
+    if (creal(p) >= 0)
+        return fourth_root(p) - sqrt(sqrt(SMALL));
+    const double _Complex x = fourth_root(-p / 4);
+    return x - 2 + fabs(cimag(x));
 }

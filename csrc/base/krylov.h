@@ -25,7 +25,7 @@ struct rd_krylov rd_krylov(double _Complex p, double _Complex growth);
 /* d/dp of all of them at the same growth, `one` apart */
 struct rd_krylov rd_krylov_slope(double _Complex p, double _Complex growth);
 
-/* A growth that leaves all of them finite; 0 where p is small, and continuous there. */
+/* A growth that leaves all of them finite; 0 where p is small, and of real p continuous there. */
 double _Complex rd_krylov_growth(double _Complex p);
 
 #endif

@@ -11,6 +11,7 @@ from linear_case import Case, Exact, random_case
 import ropedyn as rd
 from ropedyn.motion.line.force_transform import transform
 from ropedyn.motion.line.grid import Grid
+from ropedyn.motion.line.transfer import Transfer
 from ropedyn.scene.force import Samples
 
 LENGTH, DENSITY, TENSION = 1.3, 0.1, 100.0
@@ -135,6 +136,20 @@ def test_internal_forces_know_of_rotating_modes_beyond_the_rates(quantity):
         model.transient(time, **asked, quantity=quantity, tolerance=to) for to in (1e-3, 1e-7)
     )
     assert (np.abs(some.value - more.value) <= some.error + more.error).all()
+
+
+def test_a_thin_wire_has_digits_far_beyond_the_rates():
+    """Its cosines overflowed at a third of complex rates: motion of such ropes was refused."""
+    x = LENGTH / 4
+    wire, at = rd.BrokenWire(x, 0.1, 3e-5, radius=0.0), ("z", x)
+    scene = rd.Scene(ROPE, tension=TENSION, damping=rd.StiffnessDamping(5e-5), parts=[wire])
+    s = (1 + 1j) * np.geomspace(1e7, 1e9, 40)
+    with_it, without = (
+        Transfer(one.compile(elements=12, element="rigid"), (at,), (at,)).at(s)
+        for one in (scene, scene.replace(parts=[]))
+    )
+    # hardly any of a wire of 5e-7 kg moves with its foot
+    assert with_it == pytest.approx(without, rel=1e-6)  # measured: 4e-8
 
 
 def test_a_response_that_hardly_arrives_is_known():
