@@ -47,12 +47,19 @@ static void unfold(double _Complex P, double _Complex growth, struct rd_krylov *
     k->c[3] = (S - s) / (2 * P * P * P);
 }
 
-/* p = -4 x^4; cos x and sin x take their own part of the growth */
+/* what cos x and sin x grow by, where it may be large: a small step of complex x leaves it 0 */
+static double turning(double _Complex x)
+{
+    return fabs(cimag(x)) > 1 ? fabs(cimag(x)) : 0;
+}
+
+/* p = -4 x^4 */
 static void fold(double _Complex x, double _Complex growth, struct rd_krylov *k)
 {
-    const double turning = fabs(cimag(x));
-    const double _Complex C = even(x, growth - turning), S = odd(x, growth - turning);
-    const double _Complex c = even(I * x, turning), s = odd(I * x, turning) / I;
+    const double own = turning(x);
+    const double _Complex C = even(x, growth - own), S = odd(x, growth - own);
+    const double _Complex c = own > 0 ? even(I * x, own) : ccos(x);
+    const double _Complex s = own > 0 ? odd(I * x, own) / I : csin(x);
     k->c[0] = c * C;
     k->c[1] = (c * S + s * C) / (2 * x);
     k->c[2] = s * S / (2 * x * x);
@@ -106,5 +113,5 @@ double _Complex rd_krylov_growth(double _Complex p)
     if (creal(p) >= 0)
         return fourth_root(p) - sqrt(sqrt(SMALL));
     const double _Complex x = fourth_root(-p / 4);
-    return x - 2 + fabs(cimag(x));
+    return x - 2 + turning(x);
 }
