@@ -557,7 +557,7 @@ class Model(Compiled):
             If an argument is of the wrong type.
         SceneError
             If a value has no meaning; a `LossFactor`; continuous spans whose tension pulsates or
-            is stretching, or where dry friction slips.
+            is stretching, or where dry friction slips; branches where it does.
         SolveError
             If there is no steady state, or 256 harmonics do not tell it.
 

@@ -310,6 +310,30 @@ def test_scenes_without_branches_say_why(change, message):
         duffing(**change).stepped_sine([12.0, 24.0], drive=("z", 0.5), amplitude=1.0, branches=True)
 
 
+def stopped(friction):
+    """Return a string with a stop, and what is asked of it, beside friction."""
+    parts = [rd.Dashpot(0.25, friction, exponent=0.0), rd.Stop(0.5, 1e3, gap=1e-3)]
+    how = {"damping": rd.RayleighDamping(DECAY, 0.0), "parts": parts}
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, **how).compile(elements=4)
+    asked = {"drive": ("z", 0.5), "amplitude": 1.0, "response": [("z", 0.25), ("z", 0.5)]}
+    return model.stepped_sine([12.0, 24.0], **asked, branches=True)
+
+
+def test_branches_are_refused_where_friction_slips():
+    """It was taken as holding, however little it can."""
+    with pytest.raises(rd.SceneError, match="branches must be False where friction slips"):
+        stopped(0.02)
+
+
+def test_a_point_that_friction_holds_on_branches_does_not_move():
+    """It moved by rounding, with an error of 26 times that."""
+    branches = stopped(10.0)
+    assert not branches.value[0].any()
+    assert not branches.rounding_error[0].any()
+    assert branches.value[1].all()
+    assert branches.rounding_error[1].max() < 1e-5
+
+
 def test_one_frequency_has_no_branches():
     with pytest.raises(rd.SceneError, match="frequency must hold two"):
         duffing().stepped_sine([12.0], drive=("z", 0.5), amplitude=1.0, branches=True)

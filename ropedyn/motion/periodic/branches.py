@@ -22,7 +22,7 @@ from .balance import HarmonicBalance
 from .continuation import Place
 from .driven import Driven
 from .state import HARMONICS, MOST, SteadyState, by_frequency, settled
-from .stepped import STEPS, at_rest, holding, pieces, watched
+from .stepped import STEPS, at_rest, holding, pieces, slips, watched
 
 SAME = 1e-3  # Motions at one frequency that differ by less are one, relative.
 
@@ -145,6 +145,8 @@ def solve_branches(asked: SteppedSine) -> Branches:
             found.append(way)
             asked.progress(len(found) / len(ways))
         if len(found) == len(ways):
+            if any(slips(driven, way) for way in found):
+                raise SceneError("branches must be False where friction slips, got True")
             return _answer(driven, found)
         harmonics *= 2
         if 2 * harmonics > MOST:

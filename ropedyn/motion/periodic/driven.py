@@ -198,7 +198,8 @@ class Driven:
         if self.asked.model.element == "continuous":
             beside = np.where(found.value == 0, 0.0, found.mesh_error)
             known = known + beside * np.abs(found.value)
-        return share.sum(axis=0), (np.abs(push[:, None]) * known).sum(axis=0)
+        moves = np.array([[one not in self.held] for one in self.asked.responses])
+        return moves * share.sum(axis=0), moves * (np.abs(push[:, None]) * known).sum(axis=0)
 
 
 def known_to(found: FRF) -> Real:

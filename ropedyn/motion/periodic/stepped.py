@@ -37,7 +37,7 @@ def solve_stepped(asked: SteppedSine) -> FRF:
     if driven.is_linear:
         return _linear(asked, driven)
     states = _followed(driven) if driven.points else []
-    if _slips(driven, states):
+    if slips(driven, states):
         return slipping(asked, driven.turn)
     value, error = watched(driven, asked.frequency, states)
     unknowns = max((len(state.place.x) for state in states), default=0)
@@ -94,7 +94,7 @@ def _linear(asked: SteppedSine, driven: Driven) -> FRF:
     return asked.answer(f, found.value, error, cost, np.ones(len(f), dtype=np.bool_))
 
 
-def _slips(driven: Driven, states: list[SteadyState]) -> bool:
+def slips(driven: Driven, states: list[SteadyState]) -> bool:
     """Whether friction does not hold at all frequencies."""
     if not driven.held:
         return False
