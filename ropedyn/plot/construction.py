@@ -52,7 +52,10 @@ def plot_spread(spread: SectionSpread, ax: Axes) -> None:
         ax.plot([100.0], [y], "o", color="white", markeredgecolor=BLUE, zorder=3)
     if min(np.min(line.get_xdata()) for line in ax.lines) > 0:
         ax.set_xscale("log")
-    names = [f"{name.replace('_', ' ')}\n{_median(spread, name)}" for name in UNITS]
+    names = [
+        f"{name.replace('_', ' ')}\n{np.median(getattr(spread, name)):.4g} {unit}"
+        for name, unit in UNITS.items()
+    ]
     ax.set_yticks(range(len(names)), names, fontsize="small")
     ax.invert_yaxis()
     ax.set(xlabel="share of the median [%]")
@@ -60,10 +63,6 @@ def plot_spread(spread: SectionSpread, ax: Axes) -> None:
     ax.set_title(f"sections of {len(spread.axial_stiffness)} draws")
     legend(ax)
     light_grid(ax)
-
-
-def _median(spread: SectionSpread, name: str) -> str:
-    return f"{np.median(getattr(spread, name)):.4g} {UNITS[name]}"
 
 
 def _across(strand: Strand, ax: Axes) -> None:

@@ -12,7 +12,7 @@ from ..axis.axis import Axis
 from ..base import check
 from ..base.errors import SceneError
 from ..scene import damping
-from ..scene.end import End, end_of
+from ..scene.end import end_of
 from ..scene.parts import part as _part
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.rope import in_plane
@@ -88,8 +88,9 @@ def rope_of_scene(scene: Scene, *, followed: float = FOLLOWED) -> SpaceRope:
     for node, end in zip((0, -1), () if axis.closed else scene.ends):
         stand = end_of(end)
         rope.held[node] |= [stand.holds(c) for c in SIX]
-        for array, what in zip((rope.springs, rope.masses, rope.dashpots), _standing(stand)):
-            array[node] = np.diag(what)
+        given = stand.spring, stand.mass, stand.dashpot
+        for array, what in zip((rope.springs, rope.masses, rope.dashpots), given):
+            array[node] = np.diag([what.get(c, 0.0) for c in SIX])
     return _with_parts(replace(rope, longer=scene.rope.length / chord), scene)
 
 
@@ -142,7 +143,3 @@ def carried_wire(wire: BrokenWire, node: int) -> Carried:
 def finer_rope(scene: Scene, rope: SpaceRope) -> SpaceRope | None:
     """Return one of shorter pieces, None where the pieces are exact."""
     return rope_of_scene(scene, followed=FINER) if rope.changes else None
-
-
-def _standing(end: End) -> list[list[float]]:
-    return [[what.get(c, 0.0) for c in SIX] for what in (end.spring, end.mass, end.dashpot)]

@@ -236,17 +236,13 @@ def _isolate(counter: Counter, wanted: int, unit: float) -> list[tuple[int, int]
         (share,) = counter.each([high])
         modes = [(k, i) for k in counter.components for i in range(share[k])]
         brackets = {counter.bracket(*one) for one in modes}
-        wide = {one for one in brackets if not _is_done(one, unit)}
+        near = {one: ALONE if one.size == 1 else TOGETHER for one in brackets}
+        wide = {one for one in brackets if not _are_close(one.low, one.high, near[one], unit)}
         more = len(modes) > wanted and not _are_close(low, high, TOGETHER, unit)
         if not wide and not more:
             return modes
         _divide(counter, wide, unit, _between(low, high, unit) if more else [])
     raise SolveError("modes lie closer together than counts tell apart")
-
-
-def _is_done(bracket: Bracket, unit: float) -> bool:
-    near = ALONE if bracket.size == 1 else TOGETHER
-    return _are_close(bracket.low, bracket.high, near, unit)
 
 
 def _are_close(low: float, high: float, near: float, unit: float) -> bool:

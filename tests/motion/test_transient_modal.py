@@ -86,6 +86,22 @@ def test_mass_on_a_string_is_an_oscillator(ratio):
     np.testing.assert_allclose(history.value[0], exact, atol=1e-11 * np.abs(exact).max())
 
 
+@pytest.mark.parametrize("span", [1e-7, 1e-5, 1e-3])
+def test_mass_let_go_begins_as_an_oscillator(span):
+    """Far within a period derivatives lost (omega t)^2 of their digits, and no error said so."""
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=2)
+    mass, stiffness = (m().toarray()[0, 0] for m in (model.mass_matrix, model.stiffness_matrix))
+    omega, time = np.sqrt(stiffness / mass), np.linspace(0.0, span, 6)
+    exact = [-omega * np.sin(omega * time), -(omega**2) * np.cos(omega * time)]
+    for quantity, rest in zip(("velocity", "acceleration"), exact):
+        asked = {"start": {("z", 0.5): 1.0}, "response": ("z", 0.5), "quantity": quantity}
+        history = model.transient(time, **asked)
+        off = np.abs(history.value[0] - rest / stiffness)
+        assert history.cost.method == "modal"
+        assert (off <= history.error[0]).all()
+        assert off.max() <= 1e-13 * np.abs(rest).max() / stiffness  # measured: 4e-15
+
+
 def test_string_under_a_sine_is_the_sum_of_its_modes_and_the_static_rest():
     model = rd.Scene(STRING, tension=TENSION, damping=rd.ViscousDamping(0.3)).compile()
     asked = {"drive": ("z", 0.4), "force": rd.Sine(0.7, 20.0), "response": ("z", 0.9)}

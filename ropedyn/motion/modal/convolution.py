@@ -55,8 +55,9 @@ def release(expansion: Expansion, drive: int, load: float, time: Real, order: in
         raise SceneError("start must be None where the rope has no rest under a load")
     rest = load * np.divide(1.0, modes.square, out=np.zeros_like(modes.square), where=~growing)
     with np.errstate(all="ignore"):  # as above
-        terms = _motion(modes, SinePiece(time[0]), rest, np.zeros_like(rest), time[-1] - time[0])
-        value = evaluate(terms.rate, _seen(modes, terms, order), time - time[0])
+        state, span = (rest, np.zeros_like(rest)), float(time[-1] - time[0])
+        terms = _motion(modes, SinePiece(time[0]), state, span, order)
+        value = evaluate(terms.rate, _seen(modes, terms), time - time[0])
     return _checked(value, time)
 
 
@@ -90,8 +91,8 @@ def _chirp(modes: Oscillators, rest: Real, force: Chirp, time: Real, order: int)
     value = np.zeros((len(rest), len(time)))
     value[:, :last], q, v = under_chirp(modes, rest, now, time[:last] - begin, order)
     if last < len(time):
-        terms = _motion(modes, SinePiece(end), q, v, time[-1] - end or now.span)
-        value[:, last:] = evaluate(terms.rate, _seen(modes, terms, order), time[last:] - end)
+        terms = _motion(modes, SinePiece(end), (q, v), float(time[-1] - end) or now.span, order)
+        value[:, last:] = evaluate(terms.rate, _seen(modes, terms), time[last:] - end)
     return value
 
 
@@ -105,18 +106,27 @@ def _sines(modes: Oscillators, rest: Real, turns: list[SinePiece], time: Real, o
         until = len(time) if following is None else np.searchsorted(time, stop)
         now = slice(np.searchsorted(time, piece.start), until)
         v = v + piece.kick
-        terms = _motion(modes, piece, q, v, stop - piece.start or time[-1] - time[0])
-        value[:, now] = evaluate(terms.rate, _seen(modes, terms, order), time[now] - piece.start)
+        span = float(stop - piece.start or time[-1] - time[0])
+        terms = _motion(modes, piece, (q, v), span, order)
+        value[:, now] = evaluate(terms.rate, _seen(modes, terms), time[now] - piece.start)
         if rest.any():
             value[:, now] += rest * piece.value(time[now], order)
         if following is not None:
+            terms = _motion(modes, piece, (q, v), span)
             last = terms.weight * np.exp(terms.rate * (stop - piece.start))
             q, v = terms.state(last, len(q))
     return value
 
 
-def _motion(modes: Oscillators, piece: SinePiece, q: Real, v: Real, span: float) -> Exponentials:
-    """Return the motion of each mode under a piece from a state."""
+def _motion(
+    modes: Oscillators, piece: SinePiece, state: tuple[Real, Real], span: float, order: int = 0
+) -> Exponentials:
+    """Return the motion of each mode under a piece from a state, differentiated."""
+    q, v = state
+    for _ in range(order):  # s^order would lose digits of poles that are told together
+        q, v = v, piece.cosine - modes.square * q - 2 * modes.sigma * v
+        w, cosine, sine = piece[1:4]
+        piece = piece._replace(cosine=w * sine, sine=-w * cosine)
     # Q(s) = ((cosine s + sine w)/(s^2 + w^2) + v + (s + 2 sigma) q)/(s^2 + 2 sigma s + square)
     w = piece.frequency
     acts = piece.cosine != 0 or (piece.sine != 0 and w != 0)
@@ -134,10 +144,10 @@ def _motion(modes: Oscillators, piece: SinePiece, q: Real, v: Real, span: float)
     return invert(poles, numerator, span)
 
 
-def _seen(modes: Oscillators, terms: Exponentials, order: int) -> Complex:
+def _seen(modes: Oscillators, terms: Exponentials) -> Complex:
     """Return the weights of the responses, shape (responses, j)."""
-    k, s = terms.mode, terms.rate
-    return (modes.a[:, k] + modes.b[:, k] * s) * s**order * terms.weight
+    k = terms.mode
+    return (modes.a[:, k] + modes.b[:, k] * terms.rate) * terms.weight
 
 
 class SinePiece(NamedTuple):

@@ -68,7 +68,8 @@ class SlipBalance:
         """
         starts = near if alone else [*near, self.driven, self.sliding()]
         reached = [one for one in map(self.solved, starts) if one is not None]
-        if reached and all(_is_one(one, reached[0]) for one in reached[1:]):
+        apart = [np.abs(one - reached[0]).max() for one in reached[1:]]
+        if reached and max(apart, default=0.0) <= SAME * np.abs(reached[0]).max():
             return SlipMotion(reached[0], False)
         raised = self.raised()
         return None if raised is None else SlipMotion(raised, bool(reached))
@@ -136,8 +137,3 @@ def _whole(x: Real) -> Complex:
     """Return complex numbers of their real and then their imaginary parts."""
     real, imag = np.split(x, 2)
     return np.asarray(real + 1j * imag, dtype=np.complex128)
-
-
-def _is_one(one: Complex, other: Complex) -> bool:
-    """Whether two motions are one."""
-    return bool(np.abs(one - other).max() <= SAME * np.abs(other).max())
