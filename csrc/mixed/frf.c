@@ -29,6 +29,8 @@ enum rd_status rd_mixed_frf_solve(struct rd_mixed_frf *frf, const double _Comple
     for (size_t r = 0; r < responses; r++)
         rd_mixed_load(&frf->mixed, &frf->responses, r, frf->load + (drives + r) * n);
     rd_mixed_solve(&frf->mixed, drives + responses, frf->load, frf->solution);
+    if (rd_stop_is_asked(&frf->mixed.lu.stop))
+        return RD_INTERRUPTED;
     for (size_t d = 0; d < drives; d++) {
         const double _Complex *x = frf->solution + d * n;
         rd_mixed_spread(&frf->mixed, x, frf->spread);
