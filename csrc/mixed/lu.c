@@ -3,9 +3,9 @@
 
 #include <math.h>
 
-enum { EACH = 1 << 14 }; /* columns from one look for Ctrl-C to the next */
+enum { EACH = 1 << 14 }; /* columns or nodes from one look for Ctrl-C to the next */
 
-static bool stops(const struct rd_lu *lu, size_t j)
+bool rd_lu_stops(const struct rd_lu *lu, size_t j)
 {
     return j % EACH == 0 && rd_stop_is_asked(&lu->stop);
 }
@@ -56,7 +56,7 @@ enum rd_status rd_lu_factorise(struct rd_lu *lu)
     const size_t n = lu->size, apart = 3 * lu->reach;
     size_t right = 0; /* the last column that a row so far reaches */
     for (size_t j = 0; j < n; j++) {
-        if (stops(lu, j))
+        if (rd_lu_stops(lu, j))
             return RD_INTERRUPTED;
         double _Complex *const own = diagonal(lu, j);
         const size_t rows = below(lu, j), p = largest(own, rows);
@@ -82,7 +82,7 @@ enum rd_status rd_lu_factorise(struct rd_lu *lu)
 static void solve(const struct rd_lu *lu, double _Complex *x)
 {
     for (size_t j = 0; j < lu->size; j++) {
-        if (stops(lu, j))
+        if (rd_lu_stops(lu, j))
             return;
         const double _Complex *own = diagonal(lu, j);
         exchange(x + j, x + j + lu->pivot[j]);
@@ -90,7 +90,7 @@ static void solve(const struct rd_lu *lu, double _Complex *x)
             x[j + i] = less(x[j + i], own[i], x[j]);
     }
     for (size_t j = lu->size; j-- > 0;) {
-        if (stops(lu, j))
+        if (rd_lu_stops(lu, j))
             return;
         const double _Complex *own = diagonal(lu, j);
         const size_t above = j < 2 * lu->reach ? j : 2 * lu->reach;

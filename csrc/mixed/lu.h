@@ -17,6 +17,9 @@ struct rd_lu {
     struct rd_stop stop;     /* asked now and then */
 };
 
+/* Whether what walks along the band ends at column or node j: `stop` is asked at some of them. */
+bool rd_lu_stops(const struct rd_lu *lu, size_t j);
+
 /* Factorises the band in `factor`, whose upper `reach` rows are 0.
    RD_SINGULAR where a pivot is 0 or no number, RD_INTERRUPTED */
 enum rd_status rd_lu_factorise(struct rd_lu *lu);

@@ -11,18 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-enum {
-    W = RD_WIDTH_MAX,
-    EACH = 1 << 13, /* nodes or columns from one look for Ctrl-C to the next */
-};
+enum { W = RD_WIDTH_MAX };
 
 /* roundings of one entry of the band, a product of a few numbers, and of the refined solution */
 static const double ROUNDINGS = 2;
-
-static bool stops(const struct rd_mixed *mixed, size_t i)
-{
-    return i % EACH == 0 && rd_stop_is_asked(&mixed->lu.stop);
-}
 
 /* static receptances of a rope of the mean section and tension; z of a beam that is under tension
    too from both in parallel */
@@ -154,12 +146,12 @@ static enum rd_status fill(struct rd_mixed *mixed, const double _Complex *factor
     int32_t last = -1;
     memset(mixed->band, 0, mixed->size * (2 * mixed->reach + 1) * sizeof *mixed->band);
     for (size_t i = 0; i < chain->nodes; i++) {
-        if (stops(mixed, i))
+        if (rd_lu_stops(&mixed->lu, i))
             return RD_INTERRUPTED;
         add_node(mixed, i, factor);
     }
     for (size_t i = 0; i + 1 < chain->nodes; i++) {
-        if (stops(mixed, i))
+        if (rd_lu_stops(&mixed->lu, i))
             return RD_INTERRUPTED;
         if (chain->element_of[i] != last) {
             last = chain->element_of[i];
@@ -188,7 +180,7 @@ enum rd_status rd_mixed_factorise(struct rd_mixed *mixed, const double _Complex 
         return status;
     const size_t reach = mixed->reach, from = 2 * reach + 1, to = 3 * reach + 1;
     for (size_t j = 0; j < mixed->size; j++) {
-        if (stops(mixed, j))
+        if (rd_lu_stops(&mixed->lu, j))
             return RD_INTERRUPTED;
         double _Complex *const column = mixed->lu.factor + j * to;
         memset(column, 0, reach * sizeof *column);
@@ -214,7 +206,7 @@ void rd_mixed_solve(struct rd_mixed *mixed, size_t columns, const double _Comple
         memcpy(mixed->rest, b + c * n, n * sizeof *mixed->rest);
         for (size_t j = 0; j < n; j++) {
             size_t first, last;
-            if (stops(mixed, j))
+            if (rd_lu_stops(&mixed->lu, j))
                 return;
             rows_of(mixed, j, &first, &last);
             for (size_t i = first; i <= last; i++)

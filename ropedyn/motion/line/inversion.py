@@ -163,7 +163,7 @@ class Line:
 
         What strong damping holds is there at once as seen from the highest rate.
         """
-        run, s = self.run, self._beyond[-1]
+        run, s = self.run, self._afar[-1]
         wrong = np.zeros((len(run.responses), len(run.time)))
         if not self._is_chain:
             return wrong
@@ -194,7 +194,7 @@ class Line:
         return self.run.model.element != "continuous"
 
     @property
-    def _beyond(self) -> Complex:
+    def _afar(self) -> Complex:
         """Rates beyond the highest, the last two where modes of a chain are over."""
         omega = self.grid.omega
         end = np.array([max(self.beyond.last, LEAST_FAR * omega)] * self._is_chain)
@@ -205,7 +205,7 @@ class Line:
     def _far(self) -> Complex:
         """The transfer functions there."""
         try:
-            return self.transfer.at(self._beyond)
+            return self.transfer.at(self._afar)
         except SolveError as refusal:
             raise SolveError(
                 "what acts at once has no correct digit far beyond the rates that times resolve"
@@ -237,7 +237,7 @@ class Line:
         """Refuse by name what has no bound, as velocity where a blow at an instant hits a beam."""
         if self._is_chain and self.run.model.chain.finite is not None:
             return  # what jumps without inertia has its value from the right
-        run, s = self.run, self._beyond[-2:]
+        run, s = self.run, self._afar[-2:]
         far = self._far[..., -2:]
         for d, (place, force) in enumerate(zip(run.places, self.forces)):
             for more, size in enumerate(largest(force, run.time)):

@@ -112,7 +112,7 @@ def _sines(modes: Oscillators, rest: Real, turns: list[SinePiece], time: Real, o
         if rest.any():
             value[:, now] += rest * piece.value(time[now], order)
         if following is not None:
-            terms = _motion(modes, piece, (q, v), span)
+            terms = _motion(modes, piece, (q, v), span) if order else terms
             last = terms.weight * np.exp(terms.rate * (stop - piece.start))
             q, v = terms.state(last, len(q))
     return value
