@@ -56,7 +56,7 @@ PATIENCE = 0.05  # What waits for threads looks for Ctrl-C so often [s].
 
 
 class Errands(Generic[Key, Got]):
-    """Calls that an executor makes; within a `with` Ctrl-C waits until one is waited for."""
+    """Calls that an executor makes; within a `with` Ctrl-C waits until one is sent or asked for."""
 
     def __init__(self, executor: Executor) -> None:
         self.executor = executor
@@ -92,6 +92,7 @@ class Errands(Generic[Key, Got]):
 
     def send(self, key: Key, call: Callable[..., Got], *given: Any) -> None:
         """Have a call made; what refuses it at once, as a broken pool does, comes back as well."""
+        self._let_in()
         try:
             future = self.executor.submit(call, *given)
         except Exception as error:
