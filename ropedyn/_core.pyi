@@ -103,6 +103,9 @@ def recurrence(change: _Real, length: NDArray[np.int32], push: _Real, state: _Re
 def balance(
     transfer: _Complex, by_u: _Complex, by_v: _Complex | None, omega: _Real, /
 ) -> _Real: ...
+def first_crossing(
+    rate: _Complex, c: _Complex, d: _Complex, a: _Real, scale: _Real, end: float, /
+) -> tuple[float, int] | None: ...
 def stopped(
     stiffness: float, gap: float, side: float, step: _Real, u: _Real, v: _Real, /
 ) -> _Real: ...

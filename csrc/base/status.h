@@ -13,6 +13,7 @@ enum rd_status {
     RD_NO_CONVERGENCE,        /* an eigensolver gave up */
     RD_CLUSTER,               /* more modes lie closer together than are told apart */
     RD_SHORT_WAVES,           /* a span has more pieces shorter than its waves than are walked */
+    RD_OVERFLOW,              /* numbers are not finite */
     RD_INTERRUPTED,           /* the caller asked to stop */
 };
 

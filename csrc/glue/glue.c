@@ -32,6 +32,8 @@ static const char *text_of(enum rd_status status)
     case RD_SHORT_WAVES:
         return "a span has more than 10000000 pieces shorter than its waves, or numbers overflow: "
                "check the units";
+    case RD_OVERFLOW:
+        return "the numbers overflow: check the units and the times";
     default:
         return "unexpected status of the core";
     }

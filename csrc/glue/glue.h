@@ -138,6 +138,7 @@ PyObject *py_recurrence(PyObject *module, PyObject *arguments);
 PyObject *py_eliminate(PyObject *module, PyObject *arguments);
 PyObject *py_substitute(PyObject *module, PyObject *arguments);
 PyObject *py_balance(PyObject *module, PyObject *arguments);
+PyObject *py_first_crossing(PyObject *module, PyObject *arguments);
 PyObject *py_stopped(PyObject *module, PyObject *arguments);
 PyObject *py_collocate(PyObject *module, PyObject *arguments);
 PyObject *py_volterra(PyObject *module, PyObject *arguments);

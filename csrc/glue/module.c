@@ -74,6 +74,8 @@ static PyMethodDef methods[] = {
     {"sensitivity", py_sensitivity, METH_VARARGS,
      "sensitivity(chain, shape, motion, eigenvalue) -> slopes, squared jumps, dyads, places"},
     {"balance", py_balance, METH_VARARGS, "balance(transfer, by_u, by_v, omega) -> jacobians"},
+    {"first_crossing", py_first_crossing, METH_VARARGS,
+     "first_crossing(rate, c, d, a, scale, end) -> (time, which) or None"},
     {"stopped", py_stopped, METH_VARARGS,
      "stopped(stiffness, gap, side, step, u, v) -> force, by_u, by_v over periods"},
     {"collocate", py_collocate, METH_VARARGS,

@@ -262,6 +262,37 @@ def test_friction_that_slips_on_continuous_spans_is_the_limit_of_chains():
     assert np.abs(chain.value / exact.value - 1).max() < 1e-4 + exact.rounding_error.max()
 
 
+def test_a_point_that_friction_holds_is_still_where_it_slips_at_another_frequency():
+    model = rubbed(0.1, damping=rd.ViscousDamping(8.0)).compile(elements=4, element="rigid")
+    ask = {"drive": ("z", 0.6), "response": [("z", 0.25), ("z", 0.6)], "amplitude": 0.15}
+    stepped = model.stepped_sine([40.0, 200.0], **ask)
+    assert stepped.cost.method == "events"
+    assert (stepped.value[0] == 0).tolist() == (stepped.rounding_error[0] == 0).tolist()
+    assert (stepped.value[0] == 0).tolist() == [False, True]
+    support = rubbed(1.0, damping=rd.ViscousDamping(8.0), parts=[rd.Support(0.25)])
+    held = support.compile(elements=4, element="rigid").frf([200.0], drive=("z", 0.6))
+    off = abs(stepped.value[1, 1] / held.value[0, 0] - 1)
+    assert off <= stepped.rounding_error[1, 1] <= 1e-3
+
+
+def test_what_symmetry_leaves_still_beside_friction_has_no_correct_digit():
+    parts = [rd.Dashpot(x, 0.1, exponent=0.0) for x in (0.25, 0.75)]
+    scene = rubbed(0.1, parts=parts, damping=rd.ViscousDamping(8.0))
+    ask = {"drive": ("beta", 0.5), "response": [("z", 0.5)], "amplitude": 1.0}
+    stepped = scene.compile(elements=4, element="rigid").stepped_sine([40.0], **ask)
+    assert abs(stepped.value[0, 0]) < 1e-15
+    assert stepped.rounding_error[0, 0] > 1
+
+
+def test_motion_that_grows_for_long_settles_where_more_time_leaves_it():
+    """At resonance friction holds at first; later the point hangs back for hundreds of periods."""
+    model = rubbed(16.0, damping=rd.ViscousDamping(4.0)).compile(elements=8, element="rigid")
+    ask = {"drive": ("z", 0.6), "response": [("z", 0.25)], "amplitude": 1.0}
+    rough, fine = (model.stepped_sine([57.19], tolerance=to, **ask) for to in (1e-3, 1e-4))
+    assert abs(rough.value / fine.value - 1).max() <= rough.rounding_error.max() <= 1e-3
+    assert fine.rounding_error.max() <= 1e-4
+
+
 @pytest.mark.parametrize("exponent", [0.0, 0.5])
 def test_friction_beside_dampers_that_couple_modes_is_stepped(exponent):
     """Against exact phases of the same friction where damping does not couple."""

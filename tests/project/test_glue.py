@@ -47,6 +47,13 @@ SHAPES = np.ones((2, NODES, WIDTH))
 MOTIONS = np.ones((2, 2))
 MATRIX = np.array([[2.0, 1.0], [1.0, 3.0]])
 # changes of two lengths, eight modes, three steps
+GUARDS = (  # cos(3 t) and 2 + t e^(3 i t)
+    np.array([3j]),
+    np.array([[1.0], [0.0]], dtype=complex),
+    np.array([[0.0], [1.0]], dtype=complex),
+    np.array([[0.0], [2.0]]),
+    np.ones(2),
+)
 STEPPED = (
     np.full((2, 4, 8), 0.1),
     np.array([0, 1, 0], np.int32),
@@ -238,6 +245,7 @@ OTHERS = {
     "recurrence": lambda _: _core.recurrence(*STEPPED),
     "balance": lambda _: _core.balance(*BALANCED),
     "stopped": lambda _: _core.stopped(*STRUCK),
+    "first_crossing": lambda _: _core.first_crossing(*GUARDS, 1.0),
     "volterra": lambda _: _core.volterra(
         *VOLTERRA, np.zeros((2, 2)), np.zeros((2, 3)), np.zeros(2), 0, 2
     )[:-1],
@@ -815,6 +823,33 @@ REFUSED = {
         lambda: _core.stopped(*STRUCK[:5], STRUCK[5][:, :1]),
         ValueError,
         "v must have 2 entries along axis 1, got 1",
+    ),
+    "guards of other rates": (
+        lambda: _core.first_crossing(GUARDS[0][:0], *GUARDS[1:], 1.0),
+        ValueError,
+        "c must have 0 entries along axis 1, got 1",
+    ),
+    "more rates that grow than rates": (
+        lambda: _core.first_crossing(
+            *GUARDS[:2], np.zeros((2, 3), dtype=complex), *GUARDS[3:], 1.0
+        ),
+        ValueError,
+        "d must have as many rates as rate at most, 1, and a one power at least, got 3 and 1",
+    ),
+    "guards without a power": (
+        lambda: _core.first_crossing(*GUARDS[:3], GUARDS[3][:, :0], GUARDS[4], 1.0),
+        ValueError,
+        "a one power at least, got 1 and 0",
+    ),
+    "scales of other guards": (
+        lambda: _core.first_crossing(*GUARDS[:4], GUARDS[4][:1], 1.0),
+        ValueError,
+        "scale must have 2 entries along axis 0, got 1",
+    ),
+    "guards that overflow": (
+        lambda: _core.first_crossing(*GUARDS[:4], np.full(2, np.inf), 1.0),
+        rd.SolveError,
+        "the numbers overflow: check the units and the times",
     ),
     "modes that do not fill the lanes": (
         lambda: _core.recurrence(STEPPED[0][:, :, 1:], *STEPPED[1:]),

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Complex, Real
 from ...base.errors import SolveError
-from ...chain.port import moving
+from ...chain.port import Point, moving
 from ...response.frf import FRF
 from ...scene.force import Sine
 from ...signal.spectrum import amplitudes
@@ -31,6 +31,15 @@ TOLERANCE = 1e-3  # Of the steady state where none is given.
 SAMPLES = 1024  # Of a period, in exact phases: what slips has harmonics that fall as 1/k^3.
 MODES = 64  # Of continuous spans; half of them tell the error.
 FEWEST, MOST = 128, 1 << 15  # A period takes from so many steps to so many.
+ROUNDING = 1e-12  # Of what responses are added up of: modes are known to so much.
+
+
+class Seen(NamedTuple):
+    """Mean amplitudes over some periods."""
+
+    watched: Complex  # (mine,)
+    modes: Complex  # (k,) all of the motion
+    parts: Real  # (mine,) magnitudes that are added up to what is watched
 
 
 class Goes(Protocol):
@@ -38,8 +47,8 @@ class Goes(Protocol):
 
     mine: list[int]  # Which of the responses it has
 
-    def window(self, frequency: float, periods: range) -> Complex:
-        """Follow some periods; return the mean of the amplitudes."""
+    def window(self, frequency: float, periods: range) -> Seen:
+        """Follow some periods."""
 
 
 def slipping(asked: SteppedSine, turn: Callable[[float], int]) -> FRF:
@@ -70,27 +79,50 @@ def slipping(asked: SteppedSine, turn: Callable[[float], int]) -> FRF:
 class PhasesGoOn:
     """One component from event to event."""
 
-    def __init__(self, one: Moving, push: Sine) -> None:
+    def __init__(self, one: Moving, push: Sine, points: Sequence[Point]) -> None:
         self.one, self.push = one, push
         ((self.rows, self.mine),) = one.watched
+        held, before = one.system.laws.frictions, len(one.system.laws.contacts)
+        self.grip = {
+            row: before + k
+            for row, mine in enumerate(self.mine)
+            for k, friction in enumerate(held)
+            if friction.point == points[mine]
+        }
+        alike = [[law[0] == points[k][0] for law in one.system.laws.points] for k in self.mine]
+        self.alike = np.array(alike).reshape(len(self.mine), -1)
         self.walk = PhaseWalk(one.system)
         self.now = rest(one, 0.0)
         self.mode: tuple[int, ...] | None = None
 
-    def window(self, frequency: float, periods: range) -> Complex:
-        """Follow some periods; return the mean of the amplitudes."""
-        number = SAMPLES * len(periods)
+    def window(self, frequency: float, periods: range) -> Seen:
+        """Follow some periods."""
+        number, own = SAMPLES * len(periods), len(self.mine)
         time = np.arange(number + 1) / (SAMPLES * frequency)
         force = [Sine(self.push.amplitude, frequency, phase=self.push.phase)]
-        value = np.zeros((len(self.mine), number))
+        states = self.one.system.states
+        value = np.zeros((own + states.modes, number))
+        slips = set[int]()
         last: Visit | None = None
         for visit in self.walk.visits(self.now, pieces(force, time), self.mode):
             i, j = np.searchsorted(time[:-1], [visit.start, visit.stop])
-            value[:, i:j] = visit.outputs(self.rows).at(time[i:j] - visit.start)
+            course = visit.outputs.some(self.rows).beside(
+                visit.state().some(slice(0, states.modes))
+            )
+            value[:, i:j] = course.at(time[i:j] - visit.start)
+            slips |= {row for row, k in self.grip.items() if visit.phase.mode[k]}
             last = visit
         assert last is not None
         self.now, self.mode = last.end(), last.phase.mode
-        return np.asarray(amplitudes(value, SAMPLES).mean(axis=1))
+        found = amplitudes(value, SAMPLES).mean(axis=1)
+        parts = np.abs(states.seen) @ np.abs(found[own:])
+        parts += np.abs(states.now + states.late)[:, 0] * self.push.amplitude
+        # what symmetry leaves still is rounded beside what moves
+        beside = np.where(self.alike, parts[self.one.system.responses :], 0.0).max(axis=1)
+        parts = np.maximum(parts[self.rows], beside)
+        # where friction holds all the time nothing moves
+        found[list(self.grip.keys() - slips)] = 0.0
+        return Seen(found[:own], found[own:], parts)
 
 
 def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[tuple[Complex, Real]]:
@@ -99,14 +131,14 @@ def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[tuple[Compl
     def of(modes: int) -> list[Goes]:
         given = Run(run.model, run.time, run.drives, (push,), run.responses)
         look = Look(run.responses, run.time, 0)
-        return [PhasesGoOn(one, push) for one in moving_components(given, [look], modes)]
+        found = moving_components(given, [look], modes)
+        return [PhasesGoOn(one, push, run.responses) for one in found]
 
     rows, fewer = of(MODES), of(MODES // 2) if asked.model.element == "continuous" else None
     for f in asked.frequency.tolist():
-        after, left = _settled(asked, rows, f, 1)
-        off = np.full(len(after), left)
+        after, off = _settled(asked, rows, f, 1)
         if fewer is not None:
-            off += 2 * np.abs(_settled(asked, fewer, f, 1)[0] - after)
+            off = off + 2 * np.abs(_settled(asked, fewer, f, 1)[0] - after)
         yield after, off
 
 
@@ -121,8 +153,8 @@ class StepsGoOn:
         self.state = np.zeros((2, len(system.modes.sigma)))  # all of the motion
         self.count = FEWEST
 
-    def window(self, frequency: float, periods: range) -> Complex:
-        """Follow some periods; return the mean of the amplitudes."""
+    def window(self, frequency: float, periods: range) -> Seen:
+        """Follow some periods."""
         modes, omega, count = self.system.modes, 2 * np.pi * frequency, self.count
         begin, h = periods[0] / frequency, 1 / (frequency * count)
         turn = np.exp(2j * np.pi / count * np.arange(count * len(periods) + 1))
@@ -142,7 +174,10 @@ class StepsGoOn:
         seen = modes.seen[of] @ Q + modes.swept[of] @ V
         time = np.asarray(begin + h * np.arange(len(turn) - 1.0))
         seen += self.system.pull(time, Q)
-        return np.asarray(amplitudes(seen, count).mean(axis=1))
+        found = amplitudes(np.concatenate([seen, Q]), count).mean(axis=1)
+        own = len(self.mine)
+        parts = np.abs(modes.seen[of]) @ np.abs(found[own:])
+        return Seen(found[:own], found[own:], parts)
 
 
 def _by_steps(
@@ -170,7 +205,7 @@ def _by_steps(
                 # where velocities turn, errors fall with the step and two runs may agree by chance
                 now = np.abs(after - before)
                 apart = np.where(np.isinf(apart), now * 2, np.maximum(now, apart / 2))
-                if (2 * apart <= tolerance * np.abs(after).max()).all():
+                if (2 * apart + left <= tolerance * np.abs(after).max()).all():
                     break
             before = after
         else:
@@ -187,26 +222,39 @@ def _by_steps(
 
 def _settled(
     asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: int
-) -> tuple[Complex, float]:
-    """Return the amplitudes when they stay, and what is left."""
-    periods = math.ceil(WINDOW / turn) * turn
+) -> tuple[Complex, Real]:
+    """Return the amplitudes when the motion stays, and how far they are off, (responses,)."""
+    periods, share = math.ceil(WINDOW / turn) * turn, (asked.tolerance or TOLERANCE) / 2
     seen: list[Complex] = []
+    motion: list[Complex] = []
     for k in range(max(LONGEST // periods, LOOKS + 1)):
         found = np.zeros(len(asked.responses), dtype=np.complex128)
-        for one in rows:
-            found[one.mine] = one.window(frequency, range(k * periods, (k + 1) * periods))
+        rounded = np.zeros(len(found))
+        each = [one.window(frequency, range(k * periods, (k + 1) * periods)) for one in rows]
+        for one, now in zip(rows, each):
+            found[one.mine], rounded[one.mine] = now.watched, ROUNDING * now.parts
         seen.append(found)
+        motion.append(np.concatenate([now.modes for now in each]))
         if len(seen) <= LOOKS:
             continue
-        changes = np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1)
-        size = np.abs(seen[-1]).max()
-        left = _left(changes)
-        if left <= (asked.tolerance or TOLERANCE) / 2 * size:
-            return seen[-1], left
+        changes, moves = _changes(seen), _changes(motion)
+        ahead = _left(moves)
+        # amplitudes may hang back for a while, as where friction just begins to slip
+        goes = ahead / moves.max() if ahead > 0 else 0.0
+        left = max(_left(changes), goes * float(changes.max()))
+        enough = max(share * np.abs(found).max(), rounded.max())
+        if left <= enough and ahead <= share * np.abs(motion[-1]).max():
+            return found, np.where(found == 0, 0.0, np.maximum(left, rounded))
+    change = np.abs(motion[-1] - motion[-2]).max() / np.abs(motion[-1]).max()
     raise SolveError(
-        f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the amplitude "
-        f"changes by {float(changes[-1] / size):.1e} of itself in {periods} periods"
+        f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the motion "
+        f"changes by {float(change):.1e} of itself in {periods} periods"
     )
+
+
+def _changes(seen: list[Complex]) -> Real:
+    """Return the last changes from look to look, of what changes most."""
+    return np.asarray(np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1))
 
 
 def _left(changes: Real) -> float:

@@ -9,7 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ... import _core
 from ...base.array import Complex, Index, Real
+
+
+class Crossing(NamedTuple):
+    """Where an output falls below zero."""
+
+    time: float
+    which: int
 
 
 class Course(NamedTuple):
@@ -44,29 +52,19 @@ class Course(NamedTuple):
 
     def at(self, time: Real) -> Real:
         """Return the outputs at times [s], shape (outputs, t)."""
-        return self.on(self.powers(time), time)
-
-    def powers(self, time: Real) -> Complex:
-        """Return e^(rate t), shape (j, t)."""
         with np.errstate(under="ignore"):
-            return np.exp(np.multiply.outer(self.rate, time))
-
-    def on(self, power: Complex, time: Real) -> Real:
-        """Return the outputs where e^(rate t) is known."""
+            power = np.exp(np.multiply.outer(self.rate, time))
         value = self.c.real @ power.real - self.c.imag @ power.imag
         n = self.d.shape[1]
         if n:
             value += time * (self.d.real @ power[:n].real - self.d.imag @ power[:n].imag)
-        for m in range(self.a.shape[1] - 1, -1, -1):
-            if self.a[:, m].any():
-                value += np.multiply.outer(self.a[:, m], time**m)
+        value += self.a @ np.vander(time, self.a.shape[1], increasing=True).T
         return np.asarray(value)
 
-    def size(self, first: float, last: float) -> Real:
-        """Bound the outputs between two times, shape (outputs,)."""
-        growth = np.exp(np.maximum(self.rate.real * first, self.rate.real * last))
-        bound = np.abs(self.c) @ growth
-        n = self.d.shape[1]
-        if n:
-            bound += last * (np.abs(self.d) @ growth[:n])
-        return np.asarray(bound + np.abs(self.a) @ last ** np.arange(self.a.shape[1]))
+    def first_crossing(self, scale: Real, end: float) -> Crossing | None:
+        """Return the first time before the end at which one falls below zero, from 0 on.
+
+        `scale` is the size of the numbers that they are differences of.
+        """
+        found = _core.first_crossing(self.rate, self.c, self.d, self.a, scale, end)
+        return None if found is None else Crossing(*found)

@@ -14,8 +14,6 @@ import numpy as np
 
 from ...base.array import Complex, Index, Real
 from .course import Course
-from .phase import Matrices
-from .poles import Poles
 
 SLOW, POWERS = 3e-3, 8
 """A pole this close to 0 over the time ahead is a polynomial of so many powers of t."""
@@ -37,19 +35,14 @@ class UnderDrives(NamedTuple):
     first: Real  # (j,) size of what z is the sum of at the beginning
     push: Forcing
     fixed: Real  # s
+    rates: Complex  # all: between what is near, of the poles, of the drives
     own: Complex  # (j,) of e^(p t)
     forced: Complex  # (j, 2 m) of the drives' rates and their conjugates
     near: tuple[Index, Index]  # which poles and which of these rates
     grows: Complex  # (near,) of t e^(rate t)
     power: Complex  # (j, powers) of t
 
-    def rates(self, poles: Poles) -> Complex:
-        """Return all rates: between what is near, of the poles, of the drives."""
-        eta = _twice(self.push.rate)
-        between = (poles.rate[self.near[0]] + eta[self.near[1]]) / 2
-        return np.concatenate([between, poles.rate, eta])
-
-    def seen(self, poles: Poles, rows: Complex, Dd: Real, Ds: Real) -> Course:
+    def seen(self, rows: Complex, Dd: Real, Ds: Real) -> Course:
         """Return Re(rows z) + Dd f_d + Ds s."""
         push, j = self.push, self.near[0]
         eta = rows @ self.forced
@@ -59,13 +52,12 @@ class UnderDrives(NamedTuple):
         a = (rows @ self.power).real
         a[:, 0] += Dd @ push.level + Ds @ self.fixed
         a[:, 1] += Dd @ push.slope
-        return Course(self.rates(poles), c, rows[:, j] * self.grows, a)
+        return Course(self.rates, c, rows[:, j] * self.grows, a)
 
-    def at(self, poles: Poles, time: float) -> Complex:
+    def at(self, time: float) -> Complex:
         """Return z at a time."""
-        rate = self.rates(poles)
-        n, j = len(self.near[0]), len(poles.rate)
-        power = np.exp(rate * time)
+        n, j = len(self.near[0]), len(self.own)
+        power = np.exp(self.rates * time)
         z = self.own * power[n : n + j] + self.forced @ power[n + j :]
         z += self.power @ time ** np.arange(POWERS)
         np.add.at(z, self.near[0], self.grows * time * power[:n])
@@ -73,12 +65,20 @@ class UnderDrives(NamedTuple):
 
 
 def drive(
-    poles: Poles, matrices: Matrices, z: Complex, push: Forcing, *, fixed: Real, ahead: float
+    p: Complex,
+    driven: Complex,
+    z: Complex,
+    push: Forcing,
+    *,
+    fixed: Real,
+    held: Complex,
+    ahead: float,
 ) -> UnderDrives:
-    """Return the motion from z on while nothing happens, for a time."""
-    p = poles.rate
-    driven = poles.left @ matrices.Bd
-    eta = _twice(push.rate)
+    """Return the motion from z on while nothing happens, for a time.
+
+    p (j,) the poles; driven (j, drives) and held (j,) how drives and what is fixed push them.
+    """
+    eta = np.concatenate([push.rate, push.rate.conj()])
     forced = driven @ np.concatenate([push.wave, push.wave.conj()], axis=1) / 2
     gap = eta - p[:, None]
     one, other = np.nonzero((np.abs(gap) * ahead < CLOSE) & (forced != 0))
@@ -87,7 +87,7 @@ def drive(
     forced = np.divide(forced, gap, out=np.zeros_like(forced), where=gap != 0)
     forced[near] = 0.0
     own = z - forced.sum(axis=1)
-    level = driven @ push.level + poles.left @ (matrices.Bs @ fixed)
+    level = driven @ push.level + held
     slope = driven @ push.slope
     power = np.zeros((len(p), POWERS), dtype=np.complex128)
     slow = np.abs(p) * ahead < SLOW
@@ -98,7 +98,8 @@ def drive(
     if slow.any():
         power[slow] = _expanded(p[slow], (own[slow], level[slow], slope[slow]))
         own[slow] = 0.0
-    return UnderDrives(np.abs(z), push, fixed, own, forced, near, grows, power)
+    rates = np.concatenate([(p[one] + eta[other]) / 2, p, eta])
+    return UnderDrives(np.abs(z), push, fixed, rates, own, forced, near, grows, power)
 
 
 def _expanded(p: Complex, values: tuple[Complex, Complex, Complex]) -> Complex:
@@ -108,7 +109,3 @@ def _expanded(p: Complex, values: tuple[Complex, Complex, Complex]) -> Complex:
         for shift, value in enumerate(values[: m + 1]):
             power[:, m] += value * p ** (m - shift) / factorial(m)
     return power
-
-
-def _twice(rate: Complex) -> Complex:
-    return np.concatenate([rate, rate.conj()])

@@ -101,7 +101,7 @@ def _edges(visit: Visit, time: Real) -> Real:
 
 def _look(run: Run, one: Moving, visit: Visit, time: Real) -> _Seen:
     system, since = one.system, time - visit.start
-    state, seen = visit.state(), visit.outputs(slice(None))
+    state, seen = visit.state(), visit.outputs
     k, laws = system.states.modes, len(system.laws.points)
     x, y = state.at(since), seen.at(since)
     speed = seen.derivative().some(slice(0, system.responses + laws)).at(since)

@@ -66,7 +66,7 @@ def _record(
     j = int(np.searchsorted(look.time, visit.stop, side="right" if last else "left"))
     if i == j or not which:
         return
-    course = visit.outputs(rows)
+    course = visit.outputs.some(rows)
     for _ in range(look.order):
         course = course.derivative()
     value[which, i:j] = course.at(look.time[i:j] - visit.start)

@@ -9,11 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.array import Real
+from ...base.array import Complex, Real
 from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
 from .driven import Forcing
-
-AMPLITUDES = ("wave", "level", "slope")
 
 
 class ForcePiece(NamedTuple):
@@ -27,20 +25,20 @@ class ForcePiece(NamedTuple):
 
 def pieces(forces: Sequence[Force], time: Real, factor: float = 1.0) -> Iterator[ForcePiece]:
     """Return what drives, times a factor, between the times at which it changes, in turn."""
-    begin, end = float(time[0]), float(time[-1])
+    first, last = float(time[0]), float(time[-1])
     each = [list(_flat(force)) for force in forces]
-    cuts = {begin, end}
+    cuts = {first, last}
     for one in (one for some in each for one in some):
         inner = one.time.tolist() if isinstance(one, Samples) else one.breaks
-        cuts.update(t for t in (*inner, *(at for at, _ in one.blows)) if begin < t < end)
-    order = sorted(cuts)
-    if len(order) == 1:
-        return
-    for start, stop in pairwise(order):
-        kick = [sum(p for one in some for at, p in one.blows if at == start) for some in each]
-        push = _push(each, start, stop)
-        push = push._replace(**{name: factor * getattr(push, name) for name in AMPLITUDES})
-        yield ForcePiece(start, stop, push, factor * np.array(kick, dtype=np.float64))
+        cuts.update(t for t in (*inner, *(at for at, _ in one.blows)) if first < t < last)
+    order = np.array(sorted(cuts))
+    start, middle = order[:-1], (order[:-1] + order[1:]) / 2
+    level, slope = (factor * one for one in _straight(each, start, middle))
+    for k, (begin, end) in enumerate(pairwise(order.tolist())):
+        kick = [sum(p for one in some for at, p in one.blows if at == begin) for some in each]
+        rate, wave = _waves(each, begin, float(middle[k]))
+        push = Forcing(rate, factor * wave, level[:, k], slope[:, k])
+        yield ForcePiece(begin, end, push, factor * np.array(kick, dtype=np.float64))
 
 
 def is_chirp(force: Force) -> bool:
@@ -56,11 +54,21 @@ def _flat(force: Force) -> Iterator[Force]:
         yield force
 
 
-def _push(each: Sequence[Sequence[Force]], start: float, stop: float) -> Forcing:
-    """Return the drives between two times, within which they do not break."""
+def _straight(each: Sequence[Sequence[Force]], start: Real, middle: Real) -> tuple[Real, Real]:
+    """Return levels and slopes of drives, (drives, pieces), which do not break within pieces."""
+    level, slope = np.zeros((2, len(each), len(start)))
+    for d, force in ((d, one) for d, some in enumerate(each) for one in some):
+        if isinstance(force, Samples):
+            level[d] += force.value(start)
+            slope[d] += force.rate(middle)
+        elif isinstance(force, Step) or (isinstance(force, Sine) and force.frequency == 0):
+            level[d] += force.value(middle)
+    return level, slope
+
+
+def _waves(each: Sequence[Sequence[Force]], start: float, middle: float) -> tuple[Complex, Complex]:
+    """Return the rates of a piece, and how much drives have of each, (drives, rates)."""
     waves: list[tuple[int, float, complex]] = []
-    level, slope = np.zeros(len(each)), np.zeros(len(each))
-    middle = (start + stop) / 2
     for d, force in ((d, one) for d, some in enumerate(each) for one in some):
         if isinstance(force, Sine) and force.frequency > 0:
             w = 2 * math.pi * force.frequency
@@ -68,16 +76,11 @@ def _push(each: Sequence[Sequence[Force]], start: float, stop: float) -> Forcing
         elif isinstance(force, Impulse) and force.time <= middle < force.time + force.duration:
             w = math.pi / force.duration
             waves.append((d, w, _sine(float(force.amplitude), w * (start - force.time))))
-        elif isinstance(force, Samples):
-            level[d] += float(force.value(np.array(start)))
-            slope[d] += float(force.rate(np.array(middle)))
-        elif isinstance(force, (Step, Sine)):
-            level[d] += float(force.value(np.array(middle)))
     rate = 1j * np.array(sorted({w for _, w, _ in waves}))
     wave = np.zeros((len(each), len(rate)), dtype=np.complex128)
     for d, w, amplitude in waves:
         wave[d, np.flatnonzero(rate.imag == w)[0]] += amplitude
-    return Forcing(rate, wave, level, slope)
+    return rate, wave
 
 
 def _sine(amplitude: float, angle: float) -> complex:

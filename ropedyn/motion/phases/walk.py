@@ -15,7 +15,6 @@ from .driven import Forcing, UnderDrives, drive
 from .phase import Matrices, PhaseSystem, matrices
 from .pieces import ForcePiece
 from .poles import Poles, poles_of
-from .search import first_crossing
 
 AT_ONCE = 64  # Events so close to each other, at most,
 INSTANT = 1e-11  # of the time that is asked for.
@@ -30,6 +29,8 @@ class Phase:
     matrices: Matrices
     poles: Poles
     seen: Complex  # (outputs, j)
+    driven: Complex  # (j, drives)
+    held: Complex  # (j, 1 + frictions)
     loss: Real  # (j, n) magnitude of what z is told by
 
     @classmethod
@@ -37,12 +38,12 @@ class Phase:
         """Assemble it and find its poles."""
         m = matrices(system, mode)
         poles = poles_of(m.A, m.E.shape[1], system.span)
-        return cls(mode, m, poles, m.Y @ poles.right, np.abs(poles.left))
+        left = poles.left
+        return cls(mode, m, poles, m.Y @ poles.right, left @ m.Bd, left @ m.Bs, np.abs(left))
 
-    def outputs(self, driven: UnderDrives, which: slice) -> Course:
-        """Return some of responses, displacements and forces of laws."""
-        m = self.matrices
-        return driven.seen(self.poles, self.seen[which], m.Dd[which], m.Ds[which])
+    def outputs(self, driven: UnderDrives) -> Course:
+        """Return responses, displacements and forces of laws."""
+        return driven.seen(self.seen, self.matrices.Dd, self.matrices.Ds)
 
     def state(self, driven: UnderDrives, hold: Real) -> Course:
         """Return q, q' and e."""
@@ -51,7 +52,7 @@ class Phase:
         rows = np.concatenate([m.E @ right[:n], m.E @ right[n : 2 * n], right[2 * n :]])
         shift = np.zeros((len(rows), 1 + len(hold)))
         shift[: len(m.b), 1:] = m.b
-        return driven.seen(self.poles, rows, np.zeros((len(rows), m.Bd.shape[1])), shift)
+        return driven.seen(rows, np.zeros((len(rows), m.Bd.shape[1])), shift)
 
 
 class Instant(NamedTuple):
@@ -70,11 +71,8 @@ class Visit(NamedTuple):
     stop: float  # [s]
     phase: Phase
     driven: UnderDrives  # since its start
+    outputs: Course  # responses, displacements and forces of laws, since the start
     hold: Real  # (frictions,) where friction holds
-
-    def outputs(self, which: slice) -> Course:
-        """Return some of responses, displacements and forces of laws, since the start."""
-        return self.phase.outputs(self.driven, which)
 
     def size(self, seen: Real, order: int) -> Real:
         """Return what the modes that outputs are the sum of move them at the start, at most."""
@@ -113,12 +111,13 @@ class PhaseWalk:
             time, forcing, crowd = piece.start, piece.push, 0
             while time < piece.stop:
                 phase, driven = self._enter(now, mode, forcing, piece.stop - time)
-                outputs = phase.outputs(driven, slice(self.system.responses, None))
+                whole = phase.outputs(driven)
+                outputs = whole.some(slice(self.system.responses, None))
                 guards, scale = self._guards(mode, outputs), self._scale(phase, driven, mode)
-                event = first_crossing(guards, scale, piece.stop - time)
+                event = guards.first_crossing(scale, piece.stop - time)
                 last = piece.stop - time if event is None else event.time
                 if last > 0:
-                    yield Visit(time, time + last, phase, driven, now.hold)
+                    yield Visit(time, time + last, phase, driven, whole, now.hold)
                 now = self._leave(phase, driven, now, last)
                 if event is None:
                     break
@@ -152,12 +151,14 @@ class PhaseWalk:
         x = np.concatenate([m.E.T @ (now.q - m.b @ now.hold), m.E.T @ now.v, now.e])
         fixed = np.concatenate([[1.0], now.hold])
         z = phase.poles.left @ x
-        driven = drive(phase.poles, m, z, forcing, fixed=fixed, ahead=ahead)
+        held = phase.held @ fixed
+        p = phase.poles.rate
+        driven = drive(p, phase.driven, z, forcing, fixed=fixed, held=held, ahead=ahead)
         return phase, driven._replace(first=np.abs(z) + SHARE * (phase.loss @ np.abs(x)))
 
     def _leave(self, phase: Phase, driven: UnderDrives, now: Instant, time: float) -> Instant:
         m, n = phase.matrices, phase.matrices.E.shape[1]
-        x = (phase.poles.right @ driven.at(phase.poles, time)).real
+        x = (phase.poles.right @ driven.at(time)).real
         q, v = m.E @ x[:n] + m.b @ now.hold, m.E @ x[n : 2 * n]
         return Instant(q, v, x[2 * n :], now.hold)
 
