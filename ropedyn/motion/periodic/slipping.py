@@ -239,11 +239,12 @@ def _settled(
             continue
         changes, moves = _changes(seen), _changes(motion)
         ahead = _left(moves)
+        if ahead > share * np.abs(motion[-1]).max():
+            continue
         # amplitudes may hang back for a while, as where friction just begins to slip
         goes = ahead / moves.max() if ahead > 0 else 0.0
         left = max(_left(changes), goes * float(changes.max()))
-        enough = max(share * np.abs(found).max(), rounded.max())
-        if left <= enough and ahead <= share * np.abs(motion[-1]).max():
+        if left <= max(share * np.abs(found).max(), rounded.max()):
             return found, np.where(found == 0, 0.0, np.maximum(left, rounded))
     change = np.abs(motion[-1] - motion[-2]).max() / np.abs(motion[-1]).max()
     raise SolveError(
