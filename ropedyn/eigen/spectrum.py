@@ -20,6 +20,9 @@ from .closed import closed_count, closed_eigenvalues
 
 LARGEST_DENSE = 8_000
 """Unknowns above which the dense matrix of the assembled solver, 8 n^2 bytes, is refused."""
+STEP = 1.2
+RATES = STEP ** np.arange(-100.0, 300.0)
+"""Rates of lumps of negative inertia are told apart so far [1/s]."""
 HIGHEST = 1e100
 """Eigenvalues are counted up to this [rad^2/s^2], so that their products do not overflow."""
 
@@ -73,6 +76,18 @@ def count_component(model: Compiled, component: tuple[str, ...], limit: float) -
 def numbers_below(chain: Chain, eigenvalue: Real) -> Real:
     """Count the eigenvalues of a component below each of many, NaN where waves are too short."""
     return _core.count(chain, np.minimum(eigenvalue, HIGHEST))
+
+
+def slowest_lump(model: Compiled, component: tuple[str, ...]) -> float:
+    """Bound from below how fast lumps of negative inertia move [1/s]; infinite where none is."""
+    chain = part_of(model, component)
+    if not chain.spurious:
+        return math.inf
+    least = float(spectrum(model, component, 1)[0][0])
+    # below -rate^2 lie true motions that grow faster, and lumps that are slower
+    rate = RATES[math.sqrt(max(-least, 0.0)) < RATES]
+    slower = numbers_below(chain, -(rate**2)) > 0
+    return math.inf if not slower.any() else float(rate[slower.argmax()]) / STEP
 
 
 def _count(chain: Chain, limit: float) -> int:
@@ -177,7 +192,8 @@ def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> C
         if chain.kind == TENSED:
             # half of the digits, 55 times the root at most: the inverse of what a section gives
             loss = 128 * (math.sqrt(chain.section_loss) - 1)
-        error += np.finfo(float).eps * loss * np.abs(eigenvalue)
+        with np.errstate(invalid="ignore"):  # infinite ones are refused below, or not asked for
+            error += np.finfo(float).eps * loss * np.abs(eigenvalue)
     if not np.isfinite(eigenvalue[:most]).all() or not np.isfinite(error[:most]).all():
         raise SolveError("the numbers of the modes overflow: check the units")
     return ComponentModes(

@@ -17,7 +17,9 @@ from ..base.errors import SceneError
 from ..base.table import Table
 from ..base.unit import MOTIONS, QUANTITIES, label
 from ..chain.port import Point
+from ..chain.tip import is_tip
 from ..curves.measured import Measured
+from ..response.moved_end import is_end
 from ..scene.force import Force
 from ..signal.ringdown import RingDown, ring_down
 from ..signal.spectrum import Spectrum, amplitude, spectrum
@@ -365,7 +367,7 @@ class History(Answer):
             If something is of the wrong type.
         SceneError
             If times have not equal steps, nothing drives at the times, or something else does, as
-            loads that were let go.
+            loads that were let go, or acceleration is asked for where a blow at an instant hits.
 
         References
         ----------
@@ -389,6 +391,7 @@ class History(Answer):
                 "of what was let go is in it"
             )
         order = MOTIONS[self.quantity]
+        self._refuse_struck(drive, order)
         found, notes = estimated(
             self.time,
             self.value,
@@ -410,3 +413,20 @@ class History(Answer):
             averages=found.averages,
             notes=notes,
         )
+
+    def _refuse_struck(self, drive: int, order: int) -> None:
+        """Refuse the acceleration of what a blow at an instant hits, which no sample shows."""
+        if order < 2 or drive not in range(len(self.law)) or is_end(self.drive[drive]):
+            return
+        x, struck, blows = self.x, self.drive[drive], self.law[drive].blows
+        if not any(self.time[0] <= at <= self.time[-1] for at, _ in blows):
+            return
+        first = x[max(int(np.searchsorted(x, struck[1])) - 1, 0)]
+        last = x[min(int(np.searchsorted(x, struck[1], side="right")), len(x) - 1)]
+        for point in self.response:
+            if not is_tip(point) and first < point[1] < last:
+                raise SceneError(
+                    f'quantity must be "displacement" or "velocity" of {point} for a response per '
+                    f"force where a blow at an instant hits {struck}, which no sample of the "
+                    'acceleration shows, got "acceleration"'
+                )

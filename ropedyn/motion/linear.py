@@ -25,6 +25,8 @@ from ..response.moved_end import is_end
 from ..scene import damping
 from .coupled.energy import of_chain
 from .history import Balance, History
+from .line.force_transform import transform
+from .line.grid import Grid
 from .line.inversion import invert
 from .modal.energy_balance import balance, tells_energy
 from .modal.expansion import refuse_losses
@@ -37,8 +39,7 @@ LOOSER = (TOLERANCE, 0.1, 2.0)  # That the motion of continuous spans keeps to, 
 SHAPED = 64  # Modes that the places of a shape resolve.
 STILL = 1e-9
 """A response does not move where it is this part of what drive and response could move at most."""
-RATES = 9  # It is looked at by so many rates,
-OCTAVES = 12.0  # which span so many octaves down from the fastest that times resolve.
+RATES = 9  # It is looked at by so many rates, from the slowest to the fastest that times resolve.
 
 
 def solve_linear(run: Run) -> History:
@@ -232,22 +233,18 @@ def is_proportional(run: Run) -> bool:
 
 
 def _is_still(run: Run, response: int) -> bool:
-    """Whether a response is 0 but for rounding, as where symmetry holds it."""
+    """Whether what moves a response is 0 or adds up to 0 but for rounding, as by symmetry."""
     own = run.responses[response]
-    if is_force(own) or is_tip(own) or _has_ratios(run):
+    if is_force(own) or is_tip(own) or _has_ratios(run) or any(map(is_end, run.places)):
         return False
-    places = tuple(dict.fromkeys([*run.places, own]))
-    omega = np.pi * (len(run.time) - 1) / float(run.time[-1] - run.time[0])
-    s = omega * 2.0 ** -np.linspace(0.0, OCTAVES, RATES) * np.exp(0.4j * np.pi)
-    across = run.look(places, (own,)).at(s)
-    itself = np.abs(across[places.index(own), 0])
-    for place in run.places:
-        if is_end(place):
-            return False
-        most = np.sqrt(itself * np.abs(run.look((place,), (place,)).at(s)[0, 0]))
-        if (np.abs(across[places.index(place), 0]) > STILL * most).any():
-            return False
-    return True
+    transfer = run.look(tuple(run.places), (own,))
+    grid = Grid.over(run.time, TOLERANCE, growth=transfer.growth, ahead=transfer.ahead)
+    at = np.unique(np.geomspace(1, grid.lines, RATES).astype(np.intp))
+    s, force = grid.s[at], np.stack([transform(one, grid)[at] for one in run.as_forces])
+    itself = [run.look((p,), (p,)).at(s)[0, 0] for p in (*run.places, own)]
+    most = np.sqrt(np.abs(itself[:-1]) * np.abs(itself[-1])) * np.abs(force)
+    moves = (transfer.at(s)[:, 0] * force).sum(axis=0)
+    return bool((np.abs(moves) <= STILL * most.sum(axis=0)).all())
 
 
 def snapshots_of(run: Run) -> tuple[Real, Real]:

@@ -17,7 +17,7 @@ from ..chain.compiled import Compiled
 from ..chain.place import observed, points
 from ..chain.port import Point, is_held
 from ..response.moved_end import is_end
-from ..scene.force import Force, Impulse, forces
+from ..scene.force import Force, Impulse, Step, forces
 from ..scene.tension import Tension
 from .acting import scene_laws
 from .line.transfer import Transfer, TransferFunctions
@@ -133,6 +133,13 @@ class Run:
     def pushes(self) -> list[Force | float]:
         """What acts there: forces, and loads that are let go."""
         return [*self.forces, *self.blows, *self.loads.values()]
+
+    @property
+    def as_forces(self) -> tuple[Force, ...]:
+        """The same as forces: a load that is let go is a step back from the rest under it."""
+        begin = float(self.time[0])
+        loads = [Step(-load, time=begin) for load in self.loads.values()]
+        return (*self.forces, *self.blows, *loads)
 
     @property
     def blows(self) -> list[Force]:

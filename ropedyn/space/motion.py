@@ -98,6 +98,11 @@ class SpaceTransfer:
         pushes = bool((np.linalg.eigvalsh(rope.springs) < 0).any())
         return growth_below(least, scene.dampings, pushes=pushes)
 
+    @property
+    def ahead(self) -> float:
+        """How fast motion fades before what causes it: none does."""
+        return math.inf
+
     def most(self, omega: float, _resolved: int) -> int:
         """Return how many rates are looked at: each takes as long as its parts."""
         asked = self._asked(np.array([1j * omega]))

@@ -71,7 +71,7 @@ def test_images_are_what_a_mode_near_or_beyond_the_highest_rate_does(finer, beyo
     """Of long sums only multiples below the highest rate were looked at."""
     time, rate = np.linspace(0.0, 1.0, 401), 30.0
     samples = Samples(time, np.sin(2 * np.pi * rate * time) * np.sin(np.pi * time) ** 2)
-    grid = replace(Grid.over(time, 1e-3, 0.0, 0.0, 1), finer=finer)
+    grid = replace(Grid.over(time, 1e-3, growth=0.0, ahead=np.inf), finer=finer)
     multiple = max(1, round(beyond * finer / 2))
     mode, drag = 2 * np.pi * (400.0 * multiple - rate), 2.0
     alone = ringing(samples, grid, 0, lambda s: 1 / (s * s + drag * s + mode**2)[None])
@@ -84,7 +84,7 @@ def test_images_of_a_sum_are_those_of_its_samples():
     """A sine has none: it is no sum of straight lines."""
     time = np.linspace(0.0, 1.0, 401)
     samples = Samples(time, np.sin(2 * np.pi * 30.0 * time))
-    grid = Grid.over(time, 1e-3, 0.0, 0.0, 1)
+    grid = Grid.over(time, 1e-3, growth=0.0, ahead=np.inf)
 
     def follow(s):
         return 1 / (s * s + 2.0 * s + (2 * np.pi * 370.0) ** 2)[None]

@@ -21,7 +21,7 @@ from .jumps import excited
 from .transfer import TransferFunctions
 
 WIDTH, CLOSEST = 0.01, 1e-4  # Steps are at most so wide over the lowest rate, and wider as its
-# root farther away; those with several modes are parted down to this,
+# root farther away; those with several modes there or beside them are parted down to this,
 MOST = 400  # unless there are so many.
 
 
@@ -60,11 +60,13 @@ class Beyond:
         while True:
             modes, rate, step = np.diff(count), edges[:-1], np.diff(edges)
             few = modes <= MOST  # else so many that they are not counted
-            most = np.where(few & (modes > 1), CLOSEST, WIDTH) * np.sqrt(rate * self.first)
+            beside = np.concatenate([[0.0], modes, [0.0]])
+            crowded = few & (modes > 0) & (beside[:-2] + modes + beside[2:] > 1)  # may cancel
+            most = np.where(crowded, CLOSEST, WIDTH) * np.sqrt(rate * self.first)
             part = np.flatnonzero(step > most)
             if not len(part) or len(rate) + len(part) > MOST:
-                near = np.asarray(1j * rate + step, dtype=np.complex128)
-                return near, self.transfer.at(near)
+                right = np.asarray(1j * rate + step, dtype=np.complex128)
+                return right, self.transfer.at(right)
             middle = rate[part] + step[part] / 2
             counted = np.full(len(part), math.nan)
             counted[few[part]] = below(middle[few[part]])

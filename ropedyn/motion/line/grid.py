@@ -9,9 +9,12 @@ import numpy as np
 
 from ...base.array import Complex, Index, Real
 from ...base.computed import computed
+from ...base.errors import SolveError
 
 PERIODS = ((1e-6, (1.25, 1e-9)), (0.0, (2.0, 1e-11)))
 """From this tolerance on the period is so much longer than the record, and this alias is left."""
+LONGEST = 2.0  # It is this long at most: what moves longer before its cause is no motion of ropes.
+FADED = 16.0  # The next period's motion before its cause has faded by e^-16, and by its decay.
 EVEN = 1e-6  # Times that are off by this part of a step are even,
 SHARE = 0.1  # or by this part of a tolerance, or by
 ROUNDED = 4 * np.finfo(float).eps  # this part of the latest.
@@ -49,13 +52,32 @@ class Grid:
     decay: float  # e^(-a P), but for growth
 
     @classmethod
-    def over(cls, time: Real, tolerance: float, growth: float, omega: float, least: int) -> Grid:
-        """Return one whose lines reach so many times as far as the times resolve, and to omega."""
+    def over(
+        cls,
+        time: Real,
+        tolerance: float,
+        *,
+        growth: float,
+        ahead: float,
+        omega: float = 0.0,
+        least: int = 1,
+    ) -> Grid:
+        """Return one whose lines reach so many times as far as the times resolve, and to omega.
+
+        Motion grows and fades before its cause at these rates [1/s].
+        """
         from scipy.fft import next_fast_len
 
         longer, decay = next(pair for most, pair in PERIODS if tolerance >= most)
         steps = len(time) - 1
         span = float(time[-1] - time[0])
+        rest = (FADED - math.log(decay)) / (ahead - growth) if ahead > growth else math.inf
+        longer = max(longer, 1 + rest / span)
+        if longer > LONGEST:
+            raise SolveError(
+                'elements must be more or element "rigid": the end correction leaves lumps of '
+                f"negative inertia, which move at {ahead:.3g} 1/s, within what the times tell"
+            )
         even = is_even(time, tolerance)
         if not even:
             steps = max(steps, LEAST)

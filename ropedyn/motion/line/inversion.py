@@ -20,7 +20,7 @@ from ...base.errors import SceneError, SolveError
 from ...base.unit import MOTIONS
 from ...eigen.damped.rates import Rates
 from ...scene import damping
-from ...scene.force import Force, Step, is_sampled
+from ...scene.force import Force, is_sampled
 from ..modal.convolution import convolve
 from ..modal.expansion import Expansion
 from ..moved import Moved
@@ -92,14 +92,14 @@ class Line:
     @classmethod
     def of(cls, run: Run, tolerance: float) -> Line:
         """Look at as many as the times resolve, and at twice as many under blows at an instant."""
-        loads = [Step(-load, time=float(run.time[0])) for load in run.loads.values()]
-        forces = (*run.forces, *run.blows, *loads)
+        forces = run.as_forces
         omega = 2 * math.pi * REACH * max((f.bandwidth for f in forces), default=0.0)
         # whose responses are not small up to where the sum ends
         least = 2 if any(force.blows for force in forces) else 1
         least = least if tolerance > FINE else FIRST
         transfer = run.look(tuple(run.places), run.responses)
-        grid = Grid.over(run.time, tolerance, transfer.growth, omega, least)
+        rates = {"growth": transfer.growth, "ahead": transfer.ahead}
+        grid = Grid.over(run.time, tolerance, **rates, omega=omega, least=least)
         end = max(FAR / grid.finer, LEAST_FAR)
         beyond = Beyond(run, transfer, FADED * grid.omega, end * grid.omega)
         parts = (slice(0, len(grid.s)),)
@@ -215,8 +215,8 @@ class Line:
         """Estimate what modes of a chain beyond the rates do under the forces, (responses,)."""
         run, omega = self.run, self.grid.omega
         lag = omega * float(Rates.of(run.model.scene.dampings).linear.real[: damping.INERTIA].max())
-        if not self._is_chain or lag > DEAD or run.model.chain.spurious:
-            # modes of spans are dense, damped ones over at once, and some of no motion are counted
+        if not self._is_chain or lag > DEAD:
+            # modes of spans are dense, damped ones over at once
             return np.zeros(len(run.responses))
         return self.beyond.ringing(FADED * omega, self._smooth[0], self.forces)
 
@@ -296,6 +296,11 @@ class Line:
     def _later(self, size: Real, differ: Real) -> Real:
         """Return how large motion becomes until a period after the record, (responses,)."""
         grid = self.grid
+        # lumps of negative inertia move before what moves them: before the next period
+        after = grid.count - grid.steps
+        if math.isfinite(self.transfer.ahead):
+            after //= 4
+        size, differ = (one[:, : (grid.steps + after) * grid.finer] for one in (size, differ))
         most = size.max(axis=1, initial=0.0)
         record = size[:, : grid.steps * grid.finer + 1].max(axis=1, initial=0.0)
         if ((size - differ).max(axis=1, initial=0.0) <= GROWN * record).all():
@@ -305,8 +310,9 @@ class Line:
         twice = replace(grid, count=2 * grid.count, a=slower, finer=1)
         line = replace(self, grid=twice, value=self.transfer.at(twice.s))
         ends = np.exp(-36 * np.linspace(0.0, 1.0, twice.lines + 1) ** SHARP)
-        after = np.abs(twice.finely(line._smooth[-1] * ends))[:, twice.lines :]
-        return np.maximum(most, after.max(axis=1))
+        following = slice(twice.lines, twice.lines + grid.steps + after)
+        found = np.abs(twice.finely(line._smooth[-1] * ends))[:, following]
+        return np.maximum(most, found.max(axis=1))
 
 
 def _rounding(transfer: TransferFunctions, s: Complex, value: Complex) -> Real:

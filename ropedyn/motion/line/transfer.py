@@ -16,7 +16,7 @@ from ...chain import tip
 from ...chain.compiled import Compiled
 from ...chain.port import Point
 from ...eigen.damped.rates import Rates
-from ...eigen.spectrum import count_component, spectrum
+from ...eigen.spectrum import count_component, slowest_lump, spectrum
 from ...response.harmonic import Receptance, by_components, line_by_line
 from ...response.moved_end import moves_ends
 from ...response.question import Question
@@ -33,6 +33,10 @@ class TransferFunctions(Protocol):
     @property
     def growth(self) -> float:
         """How fast motion grows at most [1/s]."""
+
+    @property
+    def ahead(self) -> float:
+        """How fast motion fades before what causes it at least [1/s], infinite where none is."""
 
     def most(self, omega: float, resolved: int) -> int:
         """Return how many rates up to one [rad/s] are looked at, where times resolve so many."""
@@ -61,6 +65,18 @@ class Transfer:
         least = min((float(spectrum(model, c, 1)[0][0]) for c in pushed), default=0.0)
         pushes = bool((np.linalg.eigvalsh(stiffness) < 0).any())
         return growth_below(min(least, 0.0), model.scene.dampings, pushes=pushes)
+
+    @property
+    def ahead(self) -> float:
+        """How fast motion fades before what causes it at least [1/s], infinite where none is.
+
+        So a lump of negative inertia -m moves: -m s^2 + k = 0, and with drag a of the mass
+        -m (s^2 + a s) + k = 0; what else resists makes it faster.
+        """
+        model = self.model
+        slowest = min(slowest_lump(model, c) for c in model.components)
+        drag = float(Rates.of(model.scene.dampings).linear[damping.INERTIA].real) / 2
+        return math.hypot(slowest, drag) - drag
 
     def most(self, _omega: float, resolved: int) -> int:
         """Return how many rates are looked at."""

@@ -46,6 +46,7 @@ class Branch:
     place: Place
     scale: float  # of p
     small: float  # motion that is as good as none
+    called: Callable[[float], str]  # what p is
     step: float = 0.05  # the next one
     bend: Real | float = 0.0  # how the tangent changed along the last one, of x and p
 
@@ -65,7 +66,10 @@ class Branch:
                     self.place = place
                     return place
             self.step /= 2
-        raise SolveError(f"the branch cannot be followed beyond the parameter {before.p!r}")
+        where = self.called(before.p)
+        raise SolveError(
+            f"steady motion cannot be followed beyond {where}: no step is short enough"
+        )
 
     def reached(
         self, before: Place, step: float, bend: Real | float = 0.0, enough: float = ENOUGH

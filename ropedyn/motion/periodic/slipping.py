@@ -40,6 +40,7 @@ class Seen(NamedTuple):
     watched: Complex  # (mine,)
     modes: Complex  # (k,) all of the motion
     parts: Real  # (mine,) magnitudes that are added up to what is watched
+    folded: Real | float = 0.0  # (mine,) what harmonics beyond the samples may be in it
 
 
 class Goes(Protocol):
@@ -118,11 +119,14 @@ class PhasesGoOn:
         parts = np.abs(states.seen) @ np.abs(found[own:])
         parts += np.abs(states.now + states.late)[:, 0] * self.push.amplitude
         # what symmetry leaves still is rounded beside what moves
-        beside = np.where(self.alike, parts[self.one.system.responses :], 0.0).max(axis=1)
+        beside = np.where(self.alike, parts[self.one.system.responses :], 0.0)
+        beside = beside.max(axis=1, initial=0.0)
         parts = np.maximum(parts[self.rows], beside)
         # where friction holds all the time nothing moves
         found[list(self.grip.keys() - slips)] = 0.0
-        return Seen(found[:own], found[own:], parts)
+        # where forces jump harmonics fall as 1/k
+        folded = np.abs(found - amplitudes(value[:, ::2], SAMPLES // 2).mean(axis=1))[:own]
+        return Seen(found[:own], found[own:], parts, folded)
 
 
 def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[tuple[Complex, Real]]:
@@ -229,10 +233,11 @@ def _settled(
     motion: list[Complex] = []
     for k in range(max(LONGEST // periods, LOOKS + 1)):
         found = np.zeros(len(asked.responses), dtype=np.complex128)
-        rounded = np.zeros(len(found))
+        rounded, folded = np.zeros((2, len(found)))
         each = [one.window(frequency, range(k * periods, (k + 1) * periods)) for one in rows]
         for one, now in zip(rows, each):
             found[one.mine], rounded[one.mine] = now.watched, ROUNDING * now.parts
+            folded[one.mine] = now.folded
         seen.append(found)
         motion.append(np.concatenate([now.modes for now in each]))
         if len(seen) <= LOOKS:
@@ -245,7 +250,7 @@ def _settled(
         goes = ahead / moves.max() if ahead > 0 else 0.0
         left = max(_left(changes), goes * float(changes.max()))
         if left <= max(share * np.abs(found).max(), rounded.max()):
-            return found, np.where(found == 0, 0.0, np.maximum(left, rounded))
+            return found, np.where(found == 0, 0.0, np.maximum(left, rounded) + folded)
     change = np.abs(motion[-1] - motion[-2]).max() / np.abs(motion[-1]).max()
     raise SolveError(
         f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the motion "

@@ -45,9 +45,12 @@ def by_frequency(driven: Driven, balance: HarmonicBalance) -> Branch:
         about, _ = balance.at(x, omega)
         return about.gap, about.jacobian, about.slope
 
+    def called(omega: float) -> str:
+        return f"{omega * balance.turn / (2 * np.pi):.6g} Hz"
+
     omega = 2 * np.pi * float(driven.asked.frequency.mean()) / balance.turn
     nowhere = Place(np.zeros(0), omega, np.zeros(0), 0.0)
-    return Branch(linearise, nowhere, SCALE * omega, SMALL * driven.size)
+    return Branch(linearise, nowhere, SCALE * omega, SMALL * driven.size, called)
 
 
 def settled(driven: Driven, states: list[SteadyState]) -> list[SteadyState] | None:

@@ -154,7 +154,8 @@ def at_rest(driven: Driven, balance: HarmonicBalance, frequency: float) -> Real:
     linear = driven.linear_motion(balance, omega)
     size = float(np.linalg.norm(linear))
     nowhere = Place(np.zeros(0), FIRST, np.zeros(0), 0.0)
-    branch = Branch(linearise, nowhere, 1.0, SMALL * size, step=0.25)
+    called = f"{{:.3g}} of the amplitude at {frequency!r} Hz".format
+    branch = Branch(linearise, nowhere, 1.0, SMALL * size, called, step=0.25)
     x = branch.settle(FIRST * linear, FIRST)
     if x is None:
         x = branch.settle(linear, 1.0)
