@@ -145,13 +145,13 @@ def _shaped_by_line(run: Run, coarse: Run) -> Moved:
 
 def _by_methods(run: Run) -> Moved:
     """Return the motion by the first method whose error is within the tolerance, or raise."""
-    tolerance = _tolerance(run)
-    kinds = _kinds(run)
-    refused: list[str] = []
+    tolerance, kinds = _tolerance(run), _kinds(run)
+    refused, advice = list[str](), ""
     for method, moved in _tried(run, _methods(run), tolerance, kinds):
         if isinstance(moved, SolveError):
             refused.append(f"{method}: {moved}")
             continue
+        advice = ". A larger tolerance, more times or a smoother force help"
         share = moved.shares(kinds)
         late = np.flatnonzero(~(share <= tolerance))
         if all(_is_still(run, int(r)) for r in late):
@@ -161,7 +161,7 @@ def _by_methods(run: Run) -> Moved:
         refused.append(f"{how}: up to {share[worst]:.1e} of it for {run.responses[worst]}")
     raise SolveError(
         f"the motion is not known to {tolerance:g} of its largest value. Error by "
-        f"{'; by '.join(refused)}. A larger tolerance, more times or a smoother force help"
+        f"{'; by '.join(refused)}{advice}"
     )
 
 
