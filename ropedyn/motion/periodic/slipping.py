@@ -34,7 +34,7 @@ FEWEST, MOST = 128, 1 << 15  # A period takes from so many steps to so many.
 ROUNDING = 1e-12  # Of what responses are added up of: modes are known to so much.
 
 
-class Seen(NamedTuple):
+class MeanAmplitudes(NamedTuple):
     """Mean amplitudes over some periods."""
 
     watched: Complex  # (mine,)
@@ -48,7 +48,7 @@ class Goes(Protocol):
 
     mine: list[int]  # Which of the responses it has
 
-    def window(self, frequency: float, periods: range) -> Seen:
+    def window(self, frequency: float, periods: range) -> MeanAmplitudes:
         """Follow some periods."""
 
 
@@ -96,7 +96,7 @@ class PhasesGoOn:
         self.now = rest(one, 0.0)
         self.mode: tuple[int, ...] | None = None
 
-    def window(self, frequency: float, periods: range) -> Seen:
+    def window(self, frequency: float, periods: range) -> MeanAmplitudes:
         """Follow some periods."""
         number, own = SAMPLES * len(periods), len(self.mine)
         time = np.arange(number + 1) / (SAMPLES * frequency)
@@ -126,7 +126,7 @@ class PhasesGoOn:
         found[list(self.grip.keys() - slips)] = 0.0
         # where forces jump harmonics fall as 1/k
         folded = np.abs(found - amplitudes(value[:, ::2], SAMPLES // 2).mean(axis=1))[:own]
-        return Seen(found[:own], found[own:], parts, folded)
+        return MeanAmplitudes(found[:own], found[own:], parts, folded)
 
 
 def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[tuple[Complex, Real]]:
@@ -157,7 +157,7 @@ class StepsGoOn:
         self.state = np.zeros((2, len(system.modes.sigma)))  # all of the motion
         self.count = FEWEST
 
-    def window(self, frequency: float, periods: range) -> Seen:
+    def window(self, frequency: float, periods: range) -> MeanAmplitudes:
         """Follow some periods."""
         modes, omega, count = self.system.modes, 2 * np.pi * frequency, self.count
         begin, h = periods[0] / frequency, 1 / (frequency * count)
@@ -181,7 +181,7 @@ class StepsGoOn:
         found = amplitudes(np.concatenate([seen, Q]), count).mean(axis=1)
         own = len(self.mine)
         parts = np.abs(modes.seen[of]) @ np.abs(found[own:])
-        return Seen(found[:own], found[own:], parts)
+        return MeanAmplitudes(found[:own], found[own:], parts)
 
 
 def _by_steps(
