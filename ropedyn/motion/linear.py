@@ -238,7 +238,7 @@ def _is_still(run: Run, response: int) -> bool:
     if is_force(own) or is_tip(own) or _has_ratios(run) or any(map(is_end, run.places)):
         return False
     transfer = run.look(tuple(run.places), (own,))
-    grid = Grid.over(run.time, TOLERANCE, growth=transfer.growth, ahead=transfer.ahead)
+    grid = Grid.over(run.time, TOLERANCE, growth=transfer.growth, ahead=math.inf)
     at = np.unique(np.geomspace(1, grid.lines, RATES).astype(np.intp))
     s, force = grid.s[at], np.stack([transform(one, grid)[at] for one in run.as_forces])
     itself = [run.look((p,), (p,)).at(s)[0, 0] for p in (*run.places, own)]

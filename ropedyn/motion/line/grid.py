@@ -50,6 +50,7 @@ class Grid:
     a: float  # [1/s]
     finer: int  # lines reach so many times as far as these steps resolve
     decay: float  # e^(-a P), but for growth
+    ahead: float  # how fast motion fades before its cause [1/s]
 
     @classmethod
     def over(
@@ -85,7 +86,7 @@ class Grid:
         a = growth - math.log(decay) * steps / (count * span)
         resolved = math.pi * steps / span
         finer = max(least, math.ceil(min(omega / resolved, FINEST)), math.ceil(2 * LEAST / count))
-        return cls(time, even, steps, count, a, finer, decay)
+        return cls(time, even, steps, count, a, finer, decay, ahead)
 
     @property
     def begin(self) -> float:

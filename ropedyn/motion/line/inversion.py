@@ -297,9 +297,7 @@ class Line:
         """Return how large motion becomes until a period after the record, (responses,)."""
         grid = self.grid
         # lumps of negative inertia move before what moves them: before the next period
-        after = grid.count - grid.steps
-        if math.isfinite(self.transfer.ahead):
-            after //= 4
+        after = (grid.count - grid.steps) // (4 if math.isfinite(grid.ahead) else 1)
         size, differ = (one[:, : (grid.steps + after) * grid.finer] for one in (size, differ))
         most = size.max(axis=1, initial=0.0)
         record = size[:, : grid.steps * grid.finer + 1].max(axis=1, initial=0.0)
