@@ -85,7 +85,7 @@ static uint8_t trait_of(const struct rd_chain *chain, size_t t)
             if (chain->mass[at] != 0.0)
                 trait |= RD_MASSIVE;
             if (chain->damping && chain->damping[at] != 0.0)
-                trait |= RD_COUPLED | RD_DASHED;
+                trait |= i == j ? RD_DASHED : RD_COUPLED | RD_DASHED;
             if (i < j && (chain->stiffness[at] != 0.0 || chain->mass[at] != 0.0))
                 trait |=
                     chain->stiffness[at] == 0.0 && is_skew(chain, chain->mass + t * w * w, i, j)

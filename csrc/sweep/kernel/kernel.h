@@ -17,13 +17,13 @@ enum {
 
 /* what a node term needs besides adding masses */
 enum rd_trait {
-    RD_COUPLED = 1,  /* a coordinate is held, two are coupled or one is damped */
+    RD_COUPLED = 1,  /* a coordinate is held or two are coupled */
     RD_SPRUNG = 2,   /* it has stiffness */
     RD_HINGED = 4,   /* a hinge on its right */
     RD_SKEW = 8,     /* its mass couples z and beta, far from an eccentric one */
     RD_CARRIES = 16, /* structures, see chain/attached.h; with RD_COUPLED */
     RD_MASSIVE = 32, /* it has mass */
-    RD_DASHED = 64,  /* it has damping; with RD_COUPLED */
+    RD_DASHED = 64,  /* it has damping */
     RD_FIXED = 128,  /* all coordinates are held; with RD_COUPLED */
 };
 

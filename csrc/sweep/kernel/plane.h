@@ -336,18 +336,21 @@ static RD_CLONES void N_(make_plain)(const struct rd_chain *chain, const struct 
         plain[i] = n_(as_complex)(all[i]);
 }
 
-/* inertia and springs of a node, and the element's own stiffness on beta */
+/* inertia, springs and dashpots of a node, and the element's own stiffness on beta */
 RD_INLINE void N_(plane_node)(const struct sweep_walk *s, size_t t, num own, struct N_(plane) * p)
 {
     const struct sweep_way *way = s->way;
     const double *m = s->chain->mass + t * FULL, *k = s->chain->stiffness + t * FULL;
-    const int trait = s->trait[t], real = s->block->real;
+    const int trait = s->trait[t], real = s->block->real && !(trait & RD_DASHED);
     const int z = W == 2 || s->block->arm[0] ? 0 : 1;
     num n[W];
     UNROLL for (int i = 0; i < W; i++) {
         n[i] = n_(scale)(n_(of)(way->inertia[at(i, i)]), m[i * (W + 1)]);
         if (trait & RD_SPRUNG)
             n[i] = n_(add)(n[i], n_(scale)(n_(of)(way->spring[at(i, i)]), k[i * (W + 1)]));
+        if (trait & RD_DASHED)
+            n[i] = n_(add)(n[i], n_(scale)(n_(of)(way->dashpot[at(i, i)]),
+                                           s->chain->damping[t * FULL + (size_t)(i * (W + 1))]));
     }
 #if RD_WIDTH == 3
     N_(load_other)(p, n[1 - z], real);
