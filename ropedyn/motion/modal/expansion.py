@@ -61,6 +61,7 @@ class Expansion(NamedTuple):
     bound: Real
     # Angular frequency of the lowest that is left out [rad/s], infinite where none is
     beyond: float
+    wrong: Real | float = 0.0  # (k,) error of each square, relative
 
     @property
     def modes(self) -> int:
@@ -201,7 +202,8 @@ def _closed(
         if asked.bound:
             bound = asked.bounded(lambda own: _apart(own, eigenvalue, circles)[1])
     lowest = float(np.sqrt(max(beyond, 0.0)))
-    return Expansion(sigma, stiff * eigenvalue, a, b, p, r, rest, bound, lowest)
+    wrong = np.divide(error, np.abs(eigenvalue), out=np.ones_like(error), where=eigenvalue != 0)
+    return Expansion(sigma, stiff * eigenvalue, a, b, p, r, rest, bound, lowest, wrong)
 
 
 def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[Real, Real]:

@@ -13,11 +13,11 @@ from ...scene.force import Force
 from ..moved import Moved
 from ..request import Run
 from .convolution import motion_under
-from .expansion import Share, expand
-from .truncation import left_out, ratio_beyond
+from .expansion import Expansion, Share, expand
+from .truncation import departure, left_out, ratio_beyond
 
-RESIDUES = 4e-12  # Residues are known to so much of the largest value,
-PHASES = 2048 * np.finfo(float).eps  # and phases to this for each rad of the fastest mode.
+RESIDUES = 4e-12  # Residues are known to so much of the largest value.
+EPS = 4 * np.finfo(float).eps  # Times are rounded by this, and so is each step.
 SHARES, TIMES, AROUND = (0.5, 0.7, 0.85), 3.0, 4
 """So much fewer modes tell the error, this many times over, within so many steps."""
 WAVE = 8  # Times resolve a period of so many samples.
@@ -85,29 +85,56 @@ def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
 
 def _rounding(run: Run, shares: tuple[Share, ...], value: Real) -> Real:
     """Estimate what rounding does to value: the phases of modes drift with time, shape as value."""
-    square = np.concatenate([np.abs(share.expansion.square) for share in shares] or [np.zeros(1)])
-    turns = math.sqrt(float(square.max(initial=0.0))) * (run.time - run.time[0])
-    most = np.abs(value).max(axis=1, initial=0.0)
-    # where modes cancel, as until a wave arrives, they round by what each of them is
-    return RESIDUES * np.maximum(most, _sizes(run, shares))[:, None] + PHASES * np.multiply.outer(
-        most, turns
-    )
-
-
-def _sizes(run: Run, shares: tuple[Share, ...]) -> Real:
-    """Return how large modes are without their signs, off resonance, (responses,)."""
-    size = np.zeros(len(run.responses))
+    time, most = run.time, np.abs(value).max(axis=1, initial=0.0)
+    span, late = float(time[-1] - time[0]), float(np.abs(time[[0, -1]]).max())
+    size, shaken, drift, whole = np.zeros((4, len(most)))
     for share in shares:
-        modes = share.expansion
+        modes, r = share.expansion, share.response
+        omega = np.sqrt(np.abs(modes.square))
+        slip = omega * modes.wrong / 2
+        memory = 1 / np.maximum(modes.sigma, 1 / span)
         for k, d in enumerate(share.drive):
-            push, blow = peak(run.pushes[d], run.time)
-            each = [
-                push * _reach(modes.square, run, run.order + n, 2)
-                + blow * _reach(modes.square, run, run.order + n, 1)
-                for n in range(2)
-            ]
-            size[share.response] += np.abs(modes.a[k]) @ each[0] + np.abs(modes.b[k]) @ each[1]
-    return size
+            each = _sizes(run, modes, k, run.pushes[d])
+            # a mode moves no more than all do, but for those that cancel
+            seen = np.maximum(most[r, None], each)
+            moving = np.minimum(_departing(run, modes, k, run.pushes[d]), seen)
+            size[r] += each.sum(axis=1)
+            shaken[r] += EPS * moving @ (late * omega + len(time))
+            drift[r] += moving @ slip
+            whole[r] += moving @ (slip * memory)
+    # where modes cancel, as until a wave arrives, they round by what each of them is
+    still = RESIDUES * np.maximum(most, size) + shaken
+    slipped = np.minimum(np.multiply.outer(drift, time - time[0]), whole[:, None])
+    return np.asarray(still[:, None] + slipped)
+
+
+def _sizes(run: Run, modes: Expansion, drive: int, push: Force | float) -> Real:
+    """Return how large modes are without their signs, off resonance, (responses, k)."""
+    pushes, blow = peak(push, run.time)
+    each = [
+        pushes * _reach(modes.square, run, run.order + n, 2)
+        + blow * _reach(modes.square, run, run.order + n, 1)
+        for n in range(2)
+    ]
+    return np.asarray(np.abs(modes.a[drive]) * each[0] + np.abs(modes.b[drive]) * each[1])
+
+
+def _departing(run: Run, modes: Expansion, drive: int, push: Force | float) -> Real:
+    """Bound how far modes move from their static response, (responses, k), or infinite."""
+    swings = modes.square > 0
+    omega, square = np.sqrt(modes.square[swings]), modes.square[swings]
+    ratio = modes.sigma[swings] / omega
+    far = np.full(modes.a[drive].shape, math.inf)
+    far[:, swings] = 0.0
+    for size, order in ((modes.a, run.order), (modes.b, run.order + 1)):
+        own = np.abs(size[drive][:, swings]) / square
+        if own.any():
+            if isinstance(push, float):
+                most = abs(push) * omega**order
+            else:
+                most = departure(push, run.time, omega, ratio, order)
+            far[:, swings] += np.multiply(own, most, out=np.zeros_like(own), where=own > 0)
+    return far
 
 
 def _reach(square: Real, run: Run, order: int, smooth: int) -> Real:

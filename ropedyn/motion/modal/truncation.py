@@ -30,56 +30,56 @@ def left_out(
 ) -> Real:
     """Bound what modes above an angular frequency add to their static response, as `bound`.
 
-    With C, the motion of a mode let go at 1, |C| <= 1, and f from rest, by parts
-
-        square q - f = -f(0) C(t) - integral of C(t - s) f'(s) ds,
-        |integral of C| <= (2 ratio + sqrt(1 + 4 ratio^2))/omega,
-
-    and so on for derivatives; a sine also by its steady state. Infinite where there is no bound, as
-    for a blow at an instant.
+    Infinite where there is no bound, as for a blow at an instant.
     """
     bound = np.asarray(bound, dtype=np.float64)
-    try:
-        reach = _reach(force, (float(time[0]), float(time[-1])), beyond, order, ratio)
-    except OverflowError:  # a derivative has left the numbers
-        reach = math.inf
+    reach = departure(force, time, np.array([beyond]), np.array([ratio]), order)[0]
     if reach == 0:  # no force: also where there is no bound
         return np.zeros_like(bound)
     return np.multiply(bound, reach, out=np.zeros_like(bound), where=bound != 0)
 
 
-def _reach(
-    force: Force, span: tuple[float, float], beyond: float, order: int, ratio: float
-) -> float:
-    """Return the bound for a static response of 1."""
+def departure(force: Force, time: Real, omega: Real, ratio: Real, order: int = 0) -> Real:
+    """Bound how far modes go from a static response of 1, shape (k,).
+
+    With C, the motion of a mode let go at 1, |C| <= 1, and f from rest, by parts
+
+        square q - f = -f(0) C(t) - integral of C(t - s) f'(s) ds,
+        |integral of C| <= (2 ratio + sqrt(1 + 4 ratio^2))/omega,
+
+    and so on for derivatives; a sine also by its steady state.
+    """
     if isinstance(force, Sum):
-        return sum(_reach(one, span, beyond, order, ratio) for one in force.forces)
-    begin, end = span
-    lag = (2 * ratio + math.sqrt(1 + 4 * ratio**2)) / beyond
-    variations = [_variation(force, begin, end, k) for k in range(order + 2)]
+        each = [departure(one, time, omega, ratio, order) for one in force.forces]
+        return np.asarray(sum(each, np.zeros(len(omega))))
+    begin, end = float(time[0]), float(time[-1])
+    try:
+        variations = [_variation(force, begin, end, k) for k in range(order + 2)]
+    except OverflowError:  # a derivative has left the numbers
+        return np.full(len(omega), math.inf)
     if any(one.jump > 0 for one in variations[:order]):
-        return math.inf
+        return np.full(len(omega), math.inf)
     now, after = variations[order:]
-    by_parts = min(now.total, now.jump + lag * after.total)
+    lag = (2 * ratio + np.sqrt(1 + 4 * ratio**2)) / omega
+    by_parts = np.minimum(now.total, now.jump + lag * after.total)
     if isinstance(force, Sine):
-        return min(by_parts, _steady(force, begin, beyond, order, ratio))
-    return by_parts
+        return np.minimum(by_parts, _steady(force, begin, omega, order, ratio))
+    return np.asarray(by_parts)
 
 
-def _steady(force: Sine, begin: float, beyond: float, order: int, ratio: float) -> float:
+def _steady(force: Sine, begin: float, omega: Real, order: int, ratio: Real) -> Real:
     """Bound by the steady state's distance and the free motion that begins with it."""
     # with x = (w/omega)^2 the distance is |x - 2 i ratio sqrt(x)|/|1 - x + 2 i ratio sqrt(x)| of
     # the force: it grows with x, and with the ratio grows or falls throughout.
     w = 2 * math.pi * force.frequency
-    x = (w / beyond) ** 2
-    if x >= 1:
-        return math.inf
+    x = np.minimum((w / omega) ** 2, 1.0)
     lost = 4 * ratio**2 * x
-    distance = max(x / (1 - x), math.sqrt((x**2 + lost) / ((1 - x) ** 2 + lost)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        distance = np.maximum(x / (1 - x), np.sqrt((x**2 + lost) / ((1 - x) ** 2 + lost)))
     most = abs(force.amplitude) * w**order
     angle = w * begin + force.phase + order * math.pi / 2
-    q, v = abs(math.sin(angle)) + distance, w / beyond * (abs(math.cos(angle)) + distance)
-    return most * (distance + math.hypot(q, v))
+    q, v = abs(math.sin(angle)) + distance, w / omega * (abs(math.cos(angle)) + distance)
+    return np.asarray(np.where(x < 1, most * (distance + np.hypot(q, v)), math.inf))
 
 
 def _variation(force: Force, begin: float, end: float, order: int) -> Variation:
@@ -121,8 +121,11 @@ def _variation_of_samples(force: Samples, begin: float, end: float, order: int) 
         return STILL
     if order > 1:
         return BLOW
-    corner = np.union1d(force.time[(force.time > begin) & (force.time < end)], [begin, end])
-    value = force.value(corner)
+    first, last = np.searchsorted(force.time, begin, "right"), np.searchsorted(force.time, end)
+    corner = np.concatenate([[begin], force.time[first:last], [end]])
+    value = np.concatenate(
+        [force.value(corner[:1]), force.sample[first:last], force.value(corner[-1:])]
+    )
     if order == 0:
         jump = abs(float(value[0]))
         return Variation(jump, jump + float(np.abs(np.diff(value)).sum()))
