@@ -1,5 +1,6 @@
 """Linear motion by the line: random scenes against exponentials of matrices, and refusals."""
 
+from functools import partial
 from itertools import pairwise
 
 import mpmath as mp
@@ -188,6 +189,29 @@ def test_rotating_modes_beside_a_negative_lump_are_known_beyond_the_rates(
     more = model.transient(np.linspace(0.0, 3.0, (count - 1) * 16 + 1), **asked)
     off = np.abs(some.value - more.value[:, ::16])
     assert (off <= some.error + more.error[:, ::16]).all()
+
+
+@pytest.mark.parametrize(
+    "acts",
+    [
+        {"velocity": {("z", 0.5): 1.0}},
+        {"drive": ("z", 0.5), "force": rd.Impulse(1.0, time=0.0501)},
+    ],
+)
+def test_modes_know_of_a_negative_lump_that_is_hardly_felt_where_they_are_driven(acts):
+    # what the place itself feels of it is less than rounding, what the end feels is not
+    end = rd.End(z="free", beta="free", spring={"z": 450.0})
+    scene = rd.Scene(
+        rd.Rope(1.0, 1.0, bending_stiffness=0.3),
+        tension=100.0,
+        ends=("pinned", end),
+        damping=rd.RayleighDamping(0.5, 1e-5),
+    )
+    ask = partial(scene.compile(elements=10).transient, np.linspace(0.0, 0.2, 501), **acts)
+    asked = {"response": ("beta", 1.0)}
+    history, line = ask(**asked), ask(**asked, method="line", tolerance=1e-6)
+    apart = np.abs(history.value - line.value)
+    assert (apart <= history.error + line.error).all()
 
 
 def test_what_a_negative_lump_moves_before_its_cause_is_not_later_motion():

@@ -23,7 +23,7 @@ from ...chain.compiled import Compiled, once
 from ...chain.port import Point, is_force, moving
 from ...eigen.damped.proportional import Proportional, proportional
 from ...eigen.damped.rates import Rates
-from ...eigen.spectrum import HIGHEST, count_component, spectrum
+from ...eigen.spectrum import HIGHEST, count_component, slowest_lump, spectrum
 from ...response.modal_sum import (
     LEAST,
     REACH,
@@ -195,15 +195,21 @@ def _closed(
         p, r = np.array([-stiff / soften]), np.where(power == 0, rest / soften, 0.0)[:, :, None]
         rest = np.where(power == 0, 0.0, rest)
     bound = np.zeros(rest.shape)
-    if not np.isfinite(beyond) and asked.chain.spurious:
-        beyond = float(eigenvalue.max(initial=0.0))
+    if not np.isfinite(beyond):  # but lumps of negative inertia
+        beyond = slowest_lump(asked.model, asked.component) ** 2
     if np.isfinite(beyond):
         bound = np.full(rest.shape, np.inf)
         if asked.bound:
-            bound = asked.bounded(lambda own: _apart(own, eigenvalue, circles)[1])
+            bound = asked.bounded(lambda own: _left(own, eigenvalue, circles))
     lowest = float(np.sqrt(max(beyond, 0.0)))
     wrong = np.divide(error, np.abs(eigenvalue), out=np.ones_like(error), where=eigenvalue != 0)
     return Expansion(sigma, stiff * eigenvalue, a, b, p, r, rest, bound, lowest, wrong)
+
+
+def _left(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> Real:
+    """Bound what is left of the response at one place, rounding included."""
+    parted = asked.parted(eigenvalue, circles)
+    return np.asarray(np.abs(parted.rest) + ROUND * parted.size)
 
 
 def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[Real, Real]:

@@ -148,7 +148,8 @@ def _variation_of_blow(force: Impulse, begin: float, end: float, order: int) -> 
 
 def ratio_beyond(model: Compiled, expansion: Expansion) -> float:
     """Return the largest damping ratio of the modes that are left out."""
-    # (drag + soften lambda)/(2 omega) is at omega' > omega at most omega'/omega of that at omega
+    # (drag + soften lambda)/(2 omega) is at omega' > omega at most omega'/omega of that at omega,
+    # and at the rate of a lump of negative inertia that is less at most omega/omega'
     omega = np.sqrt(np.maximum(expansion.square, 0.0))
     ratio = np.divide(expansion.sigma, omega, out=np.zeros_like(omega), where=omega > 0)
     if having(model.scene.dampings, "ratio"):
@@ -156,4 +157,5 @@ def ratio_beyond(model: Compiled, expansion: Expansion) -> float:
     if not omega.any() or np.isinf(expansion.beyond):
         return 0.0
     k = int(omega.argmax())
-    return float(ratio[k] * expansion.beyond / omega[k])
+    farther = expansion.beyond / omega[k]
+    return float(ratio[k] * max(farther, 1 / farther))
