@@ -43,7 +43,8 @@ FADED = 0.8  # Modes beyond this part of the highest rate are not summed in full
 DEAD = 0.3  # Modes beyond the rates whose stiffness lags by more [rad] do not ring.
 ALIAS = 8.0  # A period later motion may be so much larger,
 GROWN = 2.0  # where it grows by at most so much after the record.
-ROUGH = 1e-3  # Else it is looked at for two periods, with this alias.
+ROUGH = 1e-3  # Else it is looked at for two periods, with this alias,
+FAR_LARGER = 10.0  # as where slow rates tell of motion so much larger after both.
 ROUNDED = 33  # Rounding is bounded at so many of the rates that are looked at together.
 MOST_NUMBERS = 1 << 23  # Lines times pairs of drives and responses, at most.
 EPS = 16 * np.finfo(float).eps
@@ -87,6 +88,7 @@ class Line:
     grid: Grid
     beyond: Beyond  # what is beyond the least of the highest rates
     value: Complex  # (drives, responses, lines + 1)
+    slow: Complex  # (drives, responses, n) at the slow rates
     parts: tuple[slice, ...]  # of the lines, one after another, that were looked at together
 
     @classmethod
@@ -103,7 +105,9 @@ class Line:
         end = max(FAR / grid.finer, LEAST_FAR)
         beyond = Beyond(run, transfer, FADED * grid.omega, end * grid.omega)
         parts = (slice(0, len(grid.s)),)
-        return cls(run, transfer, forces, grid, beyond, transfer.at(grid.s), parts)
+        slower, at = grid.slow
+        value, slow = np.split(transfer.at(np.append(grid.s, slower.s[at])), [len(grid.s)], axis=2)
+        return cls(run, transfer, forces, grid, beyond, value, slow, parts)
 
     def further(self, times: int) -> Line:
         """Look so many times as far."""
@@ -294,15 +298,19 @@ class Line:
         return grid.summed(ended, since), differ[:, at], later
 
     def _later(self, size: Real, differ: Real) -> Real:
-        """Return how large motion becomes until a period after the record, (responses,)."""
+        """Return how large motion becomes from a period after the record begins, (responses,)."""
         grid = self.grid
         # lumps of negative inertia move before what moves them: before the next period
         after = (grid.count - grid.steps) // (4 if math.isfinite(grid.ahead) else 1)
         size, differ = (one[:, : (grid.steps + after) * grid.finer] for one in (size, differ))
-        most = size.max(axis=1, initial=0.0)
-        record = size[:, : grid.steps * grid.finer + 1].max(axis=1, initial=0.0)
-        if ((size - differ).max(axis=1, initial=0.0) <= GROWN * record).all():
-            return most
+        most, later = size.max(axis=1, initial=0.0), self._seen_slowly()
+        record, wrong = (
+            one[:, : grid.steps * grid.finer + 1].max(axis=1, initial=0.0) for one in (size, differ)
+        )
+        grows = (size - differ).max(axis=1, initial=0.0) > GROWN * record
+        comes = (later > FAR_LARGER * most) & (ALIAS * grid.decay * later > wrong)
+        if not (grows | comes).any():
+            return np.maximum(most, later)
         # it has hardly begun, as where a wave has not arrived
         slower = grid.a + (math.log(self.grid.decay) - math.log(ROUGH) / 2) / grid.period
         twice = replace(grid, count=2 * grid.count, a=slower, finer=1)
@@ -310,7 +318,14 @@ class Line:
         ends = np.exp(-36 * np.linspace(0.0, 1.0, twice.lines + 1) ** SHARP)
         following = slice(twice.lines, twice.lines + grid.steps + after)
         found = np.abs(twice.finely(line._smooth[-1] * ends))[:, following]
-        return np.maximum(most, found.max(axis=1))
+        return np.maximum.reduce([most, found.max(axis=1), grid.decay * later])
+
+    def _seen_slowly(self) -> Real:
+        """Estimate how large motion ever becomes, (responses,): |s y(s)| of a sine or a step."""
+        slower, at = self.grid.slow
+        force = np.stack([transform(one, slower)[at] for one in self.forces])
+        force *= slower.s[at] ** (self.run.order + 1)
+        return np.abs(np.einsum("drk,dk->rk", self.slow, force)).max(axis=1)
 
 
 def _rounding(transfer: TransferFunctions, s: Complex, value: Complex) -> Real:
