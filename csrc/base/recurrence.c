@@ -2,44 +2,99 @@
    and frequencies are as exact after a million of them. */
 #include "base/recurrence.h"
 
-#include <assert.h>
 #include <string.h>
 
-RD_INLINE lanes load(const double *from)
+enum { PART = 256 }; /* samples whose sums over modes are kept at a time */
+
+RD_INLINE quad load(const double *from)
 {
-    lanes x;
+    quad x;
     memcpy(&x, from, sizeof x);
     return x;
 }
 
-RD_INLINE void advance(size_t modes, const double *c, const double *push, const double *before,
-                       double *after)
+/* what pushes blocks, size + 1 numbers each */
+RD_INLINE void fill_pushes(size_t size, size_t blocks, const double *sample, double *push)
 {
-    for (size_t k = 0; k < modes; k += RD_LANES) {
-        const lanes q = load(before + k), v = load(before + modes + k);
-        const lanes dq = (load(c + k) * q + load(c + modes + k) * v) + load(push + k);
-        const lanes dv =
-            (load(c + 2 * modes + k) * q + load(c + 3 * modes + k) * v) + load(push + modes + k);
-        const lanes next = q + dq, faster = v + dv;
-        memcpy(after + k, &next, sizeof next);
-        memcpy(after + modes + k, &faster, sizeof faster);
+    for (size_t b = 0; b < blocks; b++, sample += size) {
+        *push++ = sample[0];
+        *push++ = sample[1] - sample[0];
+        for (size_t i = 2; i <= size; i++)
+            *push++ = (sample[i] - sample[i - 1]) - (sample[i - 1] - sample[i - 2]);
     }
 }
 
-RD_CLONES static void walk(const struct rd_recurrence *recurrence, size_t steps,
-                           const int32_t *length, const double *push, double *states)
+/* what one group does in all responses over blocks, added to the sums */
+RD_INLINE void follow(const struct rd_recurrence *r, size_t group, size_t blocks,
+                      const int32_t *kind, const double *push, double *state, quad *sum)
 {
-    const size_t modes = recurrence->modes, size = 2 * modes;
-    assert(modes % RD_LANES == 0);
-    for (size_t n = 0; n < steps; n++) {
-        const double *change = recurrence->change + (size_t)length[n] * RD_CHANGE * modes;
-        advance(modes, change, push + n * size, states + n * size, states + (n + 1) * size);
+    const size_t size = r->size, pushes = size + 1;
+    const double *read = r->read + group * size * r->responses * 2 * RD_QUAD;
+    quad q = load(state), v = load(state + RD_QUAD);
+    for (size_t b = 0; b < blocks; b++, sum += size) {
+        const double *see = read;
+        for (size_t m = 0; m < size; m++)
+            for (size_t p = 0; p < r->responses; p++, see += 2 * RD_QUAD)
+                sum[p * PART + m] += load(see) * q + load(see + RD_QUAD) * v;
+        const size_t own = group * r->kinds + (size_t)kind[b];
+        const double *c = r->change + own * RD_CHANGE * RD_QUAD;
+        const double *gain = r->gain + own * pushes * 2 * RD_QUAD;
+        quad push_q = {0}, push_v = {0};
+        for (size_t i = 0; i < pushes; i++, gain += 2 * RD_QUAD) {
+            const double by = *push++;
+            push_q += load(gain) * by;
+            push_v += load(gain + RD_QUAD) * by;
+        }
+        const quad dq = (load(c) * q + load(c + RD_QUAD) * v) + push_q;
+        const quad dv = (load(c + 2 * RD_QUAD) * q + load(c + 3 * RD_QUAD) * v) + push_v;
+        q += dq;
+        v += dv;
     }
+    memcpy(state, &q, sizeof q);
+    memcpy(state + RD_QUAD, &v, sizeof v);
+}
+
+/* the sums over modes, and what pushes within a block */
+RD_INLINE void tell(const struct rd_recurrence *r, size_t blocks, const double *push,
+                    const quad *sum, double *value, size_t stride)
+{
+    const size_t size = r->size;
+    for (size_t p = 0; p < r->responses; p++)
+        for (size_t b = 0; b < blocks; b++)
+            for (size_t m = 0; m < size; m++) {
+                const double *local = r->local + (m * r->responses + p) * size;
+                double total = 0;
+                for (size_t k = 0; k < RD_QUAD; k++)
+                    total += sum[p * PART + b * size + m][k];
+                for (size_t i = 0; i <= m; i++)
+                    total += local[i] * push[b * (size + 1) + i];
+                value[p * stride + b * size + m] = total;
+            }
+}
+
+RD_CLONES static void walk(const struct rd_recurrence *r, size_t blocks, const int32_t *kind,
+                           const double *sample, double *state, quad *work, double *value)
+{
+    const size_t most = PART / r->size, stride = blocks * r->size;
+    double push[2 * PART];
+    for (size_t first = 0; first < blocks; first += most) {
+        const size_t some = blocks - first < most ? blocks - first : most;
+        fill_pushes(r->size, some, sample + first * r->size, push);
+        memset(work, 0, r->responses * PART * sizeof *work);
+        for (size_t group = 0; group < r->groups; group++)
+            follow(r, group, some, kind + first, push, state + group * 2 * RD_QUAD, work);
+        tell(r, some, push, work, value + first * r->size, stride);
+    }
+}
+
+size_t rd_recurrence_work(size_t responses)
+{
+    return responses * PART;
 }
 
 /* copies of a function per instruction set must be static, or the extension exports them */
-void rd_recurrence_walk(const struct rd_recurrence *recurrence, size_t steps, const int32_t *length,
-                        const double *push, double *states)
+void rd_recurrence_walk(const struct rd_recurrence *recurrence, size_t blocks, const int32_t *kind,
+                        const double *sample, double *state, quad *work, double *value)
 {
-    walk(recurrence, steps, length, push, states);
+    walk(recurrence, blocks, kind, sample, state, work, value);
 }

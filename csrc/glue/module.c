@@ -63,7 +63,7 @@ static PyMethodDef methods[] = {
     {"space_count", py_space_count, METH_VARARGS,
      "space_count(rope, components, eigenvalues, scale) -> counts"},
     {"recurrence", py_recurrence, METH_VARARGS,
-     "recurrence(change, length, push, state) -> states"},
+     "recurrence(change, gain, read, local, kind, sample, state) -> value, state"},
     {"eliminate", py_eliminate, METH_VARARGS, "eliminate(A, columns): in place"},
     {"substitute", py_substitute, METH_VARARGS, "substitute(A, x): in place"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (3, 2, f)"},

@@ -46,7 +46,6 @@ FORCE = np.ones((NODES, WIDTH))
 SHAPES = np.ones((2, NODES, WIDTH))
 MOTIONS = np.ones((2, 2))
 MATRIX = np.array([[2.0, 1.0], [1.0, 3.0]])
-# changes of two lengths, eight modes, three steps
 GUARDS = (  # cos(3 t) and 2 + t e^(3 i t)
     np.array([3j]),
     np.array([[1.0], [0.0]], dtype=complex),
@@ -54,11 +53,15 @@ GUARDS = (  # cos(3 t) and 2 + t e^(3 i t)
     np.array([[0.0], [2.0]]),
     np.ones(2),
 )
+# two groups of modes through three blocks of two samples, of two kinds, seen by one response
 STEPPED = (
-    np.full((2, 4, 8), 0.1),
+    np.full((2, 2, 4, 4), 0.1),
+    np.ones((2, 2, 3, 2, 4)),
+    np.ones((2, 2, 1, 2, 4)),
+    np.ones((2, 1, 2)),
     np.array([0, 1, 0], np.int32),
-    np.ones((3, 2, 8)),
-    np.ones((2, 8)),
+    np.arange(7.0),
+    np.ones((2, 2, 4)),
 )
 # two motions of one point and its drive, harmonics up to 1, spare coefficients
 BALANCED = (
@@ -851,35 +854,40 @@ REFUSED = {
         rd.SolveError,
         "the numbers overflow: check the units and the times",
     ),
-    "modes that do not fill the lanes": (
-        lambda: _core.recurrence(STEPPED[0][:, :, 1:], *STEPPED[1:]),
+    "a block of a kind there is not": (
+        lambda: _core.recurrence(*STEPPED[:4], STEPPED[4] + 1, *STEPPED[5:]),
         ValueError,
-        "change must have a multiple of 8 modes, got 7",
+        r"kind\[1\] must be from 0 to 1, got 2",
     ),
-    "step of a length there is not": (
-        lambda: _core.recurrence(STEPPED[0], STEPPED[1] + 1, *STEPPED[2:]),
+    "a block of a kind below 0": (
+        lambda: _core.recurrence(*STEPPED[:4], STEPPED[4] - 1, *STEPPED[5:]),
         ValueError,
-        r"length\[1\] must be from 0 to 1, got 2",
+        r"kind\[0\] must be from 0 to 1, got -1",
     ),
-    "step of a length below 0": (
-        lambda: _core.recurrence(STEPPED[0], STEPPED[1] - 1, *STEPPED[2:]),
+    "samples too few": (
+        lambda: _core.recurrence(*STEPPED[:5], STEPPED[5][1:], STEPPED[6]),
         ValueError,
-        r"length\[0\] must be from 0 to 1, got -1",
-    ),
-    "pushes too few": (
-        lambda: _core.recurrence(*STEPPED[:2], STEPPED[2][1:], STEPPED[3]),
-        ValueError,
-        "push must have 3 entries along axis 0, got 2",
+        "sample must have 7 entries along axis 0, got 6",
     ),
     "state of other modes": (
-        lambda: _core.recurrence(*STEPPED[:3], STEPPED[3][:, 1:]),
+        lambda: _core.recurrence(*STEPPED[:6], STEPPED[6][1:]),
         ValueError,
-        "state must have 8 entries along axis 1, got 7",
+        "state must have 2 entries along axis 0, got 1",
     ),
     "changes of three parts": (
-        lambda: _core.recurrence(STEPPED[0][:, 1:], *STEPPED[1:]),
+        lambda: _core.recurrence(STEPPED[0][:, :, 1:], *STEPPED[1:]),
         ValueError,
-        "change must have 4 entries along axis 1, got 3",
+        "change must have 4 entries along axis 2, got 3",
+    ),
+    "pushes too few": (
+        lambda: _core.recurrence(STEPPED[0], STEPPED[1][:, :, 1:], *STEPPED[2:]),
+        ValueError,
+        "gain must have 3 entries along axis 2, got 2",
+    ),
+    "blocks without samples": (
+        lambda: _core.recurrence(*STEPPED[:2], STEPPED[2][:, :0], *STEPPED[3:]),
+        ValueError,
+        "read must have from 1 to 64 samples of a block, got 0",
     ),
     "spans of no length": (
         lambda: _core.divide(DIVIDED[0][::-1], *DIVIDED[1:]),

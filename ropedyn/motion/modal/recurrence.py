@@ -7,16 +7,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ... import _core
-from ...base.array import Real
+from ...base.array import Index, Real
 from ...scene.force import Samples
 from .exponentials import Oscillators, is_uniform, ramp, rates
 
-SLICE = 256  # The core takes so many blocks in one call: a look for Ctrl-C every millisecond.
-BLOCK, LONG = 16, 8192
-"""Even steps are taken so many at a time, twice as many of more samples than this."""
+SLICE = 1 << 20  # The core takes so many samples of modes in one call: a look for Ctrl-C,
+KINDS = 256  # or so many steps that may be of different lengths.
+BLOCK = 8  # Even steps are taken so many at a time.
 FREE, HELD, RAMP = [0, 1, 4, 5], [2, 6], [3, 7]
 """Changes by the state, under the force at the beginning, and under what it grows by."""
-LANES = 8  # Modes of the core come in multiples of this.
+QUAD = 4  # Modes of the core come in groups of so many.
 SHORT = 1.5  # Taylor's series gives the change up to this rate times step,
 TERMS = 23  # by so many terms,
 WEIGHTS = np.array([[1.0, 1 / (n + 1), 1 / ((n + 1) * (n + 2))] for n in range(1, TERMS)]).T
@@ -25,23 +25,37 @@ WEIGHTS = np.array([[1.0, 1 / (n + 1), 1 / ((n + 1) * (n + 2))] for n in range(1
 
 def straight_lines(modes: Oscillators, rest: Real, force: Samples, time: Real, order: int) -> Real:
     """Return the responses to a force by its samples, from rest at the first time."""
-    inside = force.time[(force.time > time[0]) & (force.time < time[-1])]
-    grid = time if np.array_equal(inside, time[1:-1]) else np.union1d(time, inside)
+    grid = _with_corners(force.time, time)
     sample = force.value(grid)
-    slope = np.diff(sample) / np.diff(grid)
-    slope = np.append(slope, slope[-1])
-    followed = (sample, slope, np.zeros_like(slope))
-    value = rest * followed[order]
+
+    def derived(order: int) -> Real | float:
+        if order > 1:
+            return 0.0
+        slope = np.diff(sample) / np.diff(grid) if order else sample
+        return np.append(slope, slope[-1]) if order else slope
+
+    at_once = [(rest, order)]
     for k in range(order):
         modes, direct = modes.derivative()
-        value = value + direct[:, None] * followed[order - 1 - k]
-    value += _followed(modes, grid, sample)
+        at_once.append((direct[:, None], order - 1 - k))
+    value = _followed(modes, grid, sample)
+    for size, kind in at_once:
+        if size.any():
+            value += size * derived(kind)
     return value if len(grid) == len(time) else value[:, np.searchsorted(grid, time)]
+
+
+def _with_corners(corner: Real, time: Real) -> Real:
+    """Return times and what corners are between them."""
+    if corner is time:
+        return time
+    inside = corner[np.searchsorted(corner, time[0], "right") : np.searchsorted(corner, time[-1])]
+    return time if np.array_equal(inside, time[1:-1]) else np.union1d(time, inside)
 
 
 def _followed(modes: Oscillators, grid: Real, sample: Real) -> Real:
     """Return a q + b q' at all times."""
-    spare = -len(modes.sigma) % LANES
+    spare = -len(modes.sigma) % QUAD
     wide = Oscillators(
         *(np.concatenate([each, np.zeros((*each.shape[:-1], spare))], axis=-1) for each in modes)
     )
@@ -60,51 +74,72 @@ def _in_blocks(modes: Oscillators, h: float, sample: Real) -> Real:
 
     to the free motion, in which the same P and S balance a force at rest to the last digit.
     """
-    size = min(BLOCK * (1 + (len(sample) > LONG)), len(sample))
-    blocks = -(-len(sample) // size)
-    padded = np.append(sample, np.full(blocks * size + 1 - len(sample), sample[-1]))
-    force = np.lib.stride_tricks.sliding_window_view(padded, size + 1)[::size]
-    slope = np.diff(force, axis=1)
-    given = np.concatenate([force[:, :1], slope[:, :1], np.diff(slope, axis=1)], axis=1)
+    size = min(BLOCK, len(sample))
     count = np.arange(1.0, size + 1)
     part = changes(modes.sigma, modes.square, np.asarray(h * count))
-    change = np.ascontiguousarray(part[-1:, FREE])
     held, grown = part[:, HELD], part[:, RAMP] * count[:, None, None]
-    gain = np.concatenate([held[-1:], grown[::-1]]).reshape(size + 1, -1)
-    seen = np.stack([modes.a, modes.b], axis=1)
+    seen = _seen(modes)
     free = part[:-1, FREE].reshape(size - 1, 2, 2, -1)
     read = np.concatenate([seen[None], seen + np.einsum("rck,mcdk->mrdk", seen, free)])
-    local = np.zeros((len(seen), size + 1, size))
-    local[:, 0, 1:] = np.einsum("rck,mck->rm", seen, held[:-1])
-    ramps = np.einsum("rck,mck->rm", seen, grown)
+    local = np.zeros((size, len(seen), size))
+    local[1:, :, 0] = np.einsum("rck,mck->mr", seen, held[:-1])
+    ramps = np.einsum("rck,mck->mr", seen, grown)
     for m in range(1, size):
-        local[:, 1 : m + 1, m] = ramps[:, m - 1 :: -1]
-    read = read.reshape(size, len(seen), -1)
-    state, value = np.zeros((2, len(modes.sigma))), []
-    for begin in range(0, blocks, SLICE):
-        now = given[begin : begin + SLICE]
-        push = (now @ gain).reshape(len(now), *state.shape)
-        states = _core.recurrence(change, np.zeros(len(now), dtype=np.int32), push, state)
-        before, state = states[:-1].reshape(len(now), -1), states[-1]
-        each = [before @ read[:, r].T + now @ local[r] for r in range(len(seen))]
-        value.append(np.stack([one.ravel() for one in each]))
-    return np.concatenate(value, axis=1)[:, : len(sample)]
+        local[m, :, 1 : m + 1] = ramps[m - 1 :: -1].T
+    blocks = -(-len(sample) // size)
+    padded = np.append(sample, np.full(blocks * size + 1 - len(sample), sample[-1]))
+    kind, state = np.zeros(blocks, dtype=np.int32), np.zeros((2, len(modes.sigma)))
+    gain = np.concatenate([held[-1:], grown[::-1]])[None]
+    steps = _Steps(part[-1:, FREE], gain, read, local)
+    return steps.followed(kind, padded, state)[0][:, : len(sample)]
 
 
 def _step_by_step(modes: Oscillators, h: Real, sample: Real) -> Real:
     """Follow steps of any lengths."""
-    state, value = np.zeros((2, len(modes.sigma))), [np.zeros((len(modes.a), 1))]
-    for begin in range(0, len(h), SLICE):
-        lengths, which = np.unique(h[begin : begin + SLICE], return_inverse=True)
+    seen, value = _seen(modes), []
+    state, read, local = np.zeros((2, len(modes.sigma))), seen[None], np.zeros((1, len(seen), 1))
+    for begin in range(0, len(h), KINDS):
+        lengths, which = np.unique(h[begin : begin + KINDS], return_inverse=True)
         part = changes(modes.sigma, modes.square, lengths)
-        force = sample[begin : begin + SLICE + 1]
-        push = part[which][:, HELD] * force[:-1, None, None]
-        push += part[which][:, RAMP] * np.diff(force)[:, None, None]
-        change = np.ascontiguousarray(part[:, FREE])
-        states = _core.recurrence(change, which.astype(np.int32), push, state)
-        after, state = states[1:], states[-1]
-        value.append(modes.a @ after[:, 0].T + modes.b @ after[:, 1].T)
-    return np.concatenate(value, axis=1)
+        gain = np.stack([part[:, HELD], part[:, RAMP]], axis=1)
+        steps = _Steps(part[:, FREE], gain, read, local)
+        now = sample[begin : begin + KINDS + 1]
+        found, state = steps.followed(which.astype(np.int32), now, state)
+        value.append(found)
+    last = np.einsum("rck,ck->r", seen, state)
+    return np.concatenate([*value, last[:, None]], axis=1)
+
+
+def _seen(modes: Oscillators) -> Real:
+    """Return what responses have of q and of v, (responses, 2, k)."""
+    return np.stack([modes.a, modes.b], axis=1)
+
+
+class _Steps(NamedTuple):
+    """Blocks of samples that modes go through, of some kinds; see csrc/base/recurrence.h."""
+
+    change: Real  # (kinds, 4, k)
+    gain: Real  # (kinds, size + 1, 2, k)
+    read: Real  # (size, responses, 2, k)
+    local: Real  # (size, responses, size)
+
+    def followed(self, kind: Index, sample: Real, state: Real) -> tuple[Real, Real]:
+        """Return responses at all samples but the last, and the state there, (2, k)."""
+        size, modes = len(self.local), state.shape[-1]
+        change, gain, read, state = map(_grouped, (self.change, self.gain, self.read, state))
+        most, value = max(1, SLICE // (max(modes, 1) * size)), []
+        for begin in range(0, len(kind), most):
+            now = kind[begin : begin + most]
+            force = sample[begin * size : (begin + len(now)) * size + 1]
+            found, state = _core.recurrence(change, gain, read, self.local, now, force, state)
+            value.append(found)
+        return np.concatenate(value, axis=1), np.moveaxis(state, 0, -2).reshape(2, modes)
+
+
+def _grouped(table: Real) -> Real:
+    """Return a table of modes (.., k) with groups of them first, (groups, .., QUAD)."""
+    parted = table.reshape(*table.shape[:-1], -1, QUAD)
+    return np.ascontiguousarray(np.moveaxis(parted, -2, 0))
 
 
 def changes(sigma: Real, square: Real, h: Real) -> Real:

@@ -17,6 +17,9 @@ from .expansion import Expansion, Share, expand
 from .truncation import departure, left_out, ratio_beyond
 
 RESIDUES = 4e-12  # Residues are known to so much of the largest value.
+DRIFT = (
+    1e-10  # If phases drift by no more than this part of it, it is not asked how far modes move.
+)
 EPS = 4 * np.finfo(float).eps  # Times are rounded by this, and so is each step.
 SHARES, TIMES, AROUND = (0.5, 0.7, 0.85), 3.0, 4
 """So much fewer modes tell the error, this many times over, within so many steps."""

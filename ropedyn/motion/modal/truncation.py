@@ -126,11 +126,12 @@ def _variation_of_samples(force: Samples, begin: float, end: float, order: int) 
     value = np.concatenate(
         [force.value(corner[:1]), force.sample[first:last], force.value(corner[-1:])]
     )
+    rise = np.diff(value)
     if order == 0:
         jump = abs(float(value[0]))
-        return Variation(jump, jump + float(np.abs(np.diff(value)).sum()))
-    slope = np.diff(value, prepend=value[0]) / np.diff(corner, prepend=corner[0] - 1)
-    jump = float(np.abs(np.diff(slope)).sum())
+        return Variation(jump, jump + float(np.abs(rise).sum()))
+    slope = rise / np.diff(corner)
+    jump = float(np.abs(slope[0]) + np.abs(np.diff(slope)).sum())
     return Variation(jump, jump)
 
 
