@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -340,6 +340,17 @@ class Compiled(Frozen):
 def part_of(model: Compiled, component: tuple[str, ...]) -> Chain:
     """Return the undamped chain of a component, spans joined that nothing parts."""
     return model._parts[component]
+
+
+def with_plain_lumps(model: Compiled, component: tuple[str, ...]) -> Compiled:
+    """Return the model with plain lumps where corrected ones of a component have negative inertia.
+
+    Those move before what moves them, which no motion over time that is followed takes.
+    """
+    chain = model.chain
+    if not chain.only(component).spurious:
+        return model
+    return replace(model, chain=chain._replace(mass=chain.mass * np.eye(chain.mass.shape[1])))
 
 
 def once(model: Compiled, asked: Any, compute: Callable[[], Answered]) -> Answered:

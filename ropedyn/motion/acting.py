@@ -36,6 +36,11 @@ class ActingLaw(NamedTuple):
         """Whether it jumps or bends without limit where the velocity changes its sign."""
         return self.law.kind == "power" and self.law.value[1] < 1
 
+    @property
+    def is_sharp(self) -> bool:
+        """Whether it bends or jumps where contact begins or velocities turn."""
+        return self.law.kind == "stop" or self.is_friction
+
 
 def scene_laws(scene: Scene) -> list[ActingLaw]:
     """Return the laws of all parts."""

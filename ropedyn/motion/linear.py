@@ -15,19 +15,17 @@ from ..base.answer import Cost
 from ..base.array import Real
 from ..base.errors import SceneError, SolveError
 from ..base.progress import silent
-from ..chain.port import is_force, moving
+from ..chain.port import moving
 from ..chain.tip import is_tip, tip_of
 from ..eigen.damped.proportional import proportional
 from ..eigen.damped.rates import Rates
 from ..eigen.vectors import within
 from ..response.deflection import POINTS
-from ..response.moved_end import is_end
 from ..scene import damping
 from .coupled.energy import of_chain
 from .history import Balance, History
-from .line.force_transform import transform
-from .line.grid import Grid
 from .line.inversion import invert
+from .line.still import is_still
 from .modal.energy_balance import balance, tells_energy
 from .modal.expansion import refuse_losses
 from .modal.superposition import apart, estimated, fastest, superpose
@@ -37,9 +35,6 @@ from .request import TOLERANCE, Run
 MORE, MOST = 4, 1600  # So many times more modes are summed next, and so many at most.
 LOOSER = (TOLERANCE, 0.1, 2.0)  # That the motion of continuous spans keeps to, if it can.
 SHAPED = 64  # Modes that the places of a shape resolve.
-STILL = 1e-9
-"""A response does not move where it is this part of what drive and response could move at most."""
-RATES = 9  # It is looked at by so many rates, from the slowest to the fastest that times resolve.
 
 
 def solve_linear(run: Run) -> History:
@@ -154,7 +149,7 @@ def _by_methods(run: Run) -> Moved:
         advice = ". A larger tolerance, more times or a smoother force help"
         share = moved.shares(kinds)
         late = np.flatnonzero(~(share <= tolerance))
-        if all(_is_still(run, int(r)) for r in late):
+        if all(is_still(run, int(r)) for r in late):
             return moved
         worst = int(np.nan_to_num(share, nan=np.inf).argmax())
         how = f"{moved.modes} modes" if method == "modal" else f"the line at {moved.lines} rates"
@@ -230,21 +225,6 @@ def is_proportional(run: Run) -> bool:
     driven, watched = ({moving(p) for p in some} for some in (run.places, roots))
     taking = [c for c in model.components if driven & set(c) and watched & set(c)]
     return all(proportional(model.chain.only(c), rates) is not None for c in taking)
-
-
-def _is_still(run: Run, response: int) -> bool:
-    """Whether what moves a response is 0 or adds up to 0 but for rounding, as by symmetry."""
-    own = run.responses[response]
-    if is_force(own) or is_tip(own) or _has_ratios(run) or any(map(is_end, run.places)):
-        return False
-    transfer = run.look(tuple(run.places), (own,))
-    grid = Grid.over(run.time, TOLERANCE, growth=transfer.growth, ahead=math.inf)
-    at = np.unique(np.geomspace(1, grid.lines, RATES).astype(np.intp))
-    s, force = grid.s[at], np.stack([transform(one, grid)[at] for one in run.as_forces])
-    itself = [run.look((p,), (p,)).at(s)[0, 0] for p in (*run.places, own)]
-    most = np.sqrt(np.abs(itself[:-1]) * np.abs(itself[-1])) * np.abs(force)
-    moves = (transfer.at(s)[:, 0] * force).sum(axis=0)
-    return bool((np.abs(moves) <= STILL * most.sum(axis=0)).all())
 
 
 def snapshots_of(run: Run) -> tuple[Real, Real]:

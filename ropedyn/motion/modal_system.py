@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import ATTACHED, Chain, roles
 from ..chain.compile import divided
-from ..chain.compiled import Compiled
+from ..chain.compiled import Compiled, with_plain_lumps
 from ..eigen.sensitivity import by_tension
 from ..eigen.spectrum import SOLVERS, ComponentModes, pieces_of, spectrum
 from ..response.modal_sum import numbered_ratios
@@ -73,11 +72,8 @@ class ChainModes(NamedTuple):
 
 
 def chain_modes(model: Compiled, component: tuple[str, ...]) -> ChainModes:
-    """Return all modes of a component, of plain lumps where corrected ones have negative mass."""
-    chain = model.chain
-    if chain.only(component).spurious:
-        plain = chain._replace(mass=chain.mass * np.eye(chain.mass.shape[1]))
-        model = dataclasses.replace(model, chain=plain)
+    """Return all modes of a component."""
+    model = with_plain_lumps(model, component)
     basis = _Basis.of(model, component, None)
     half = np.linalg.inv(np.linalg.cholesky(basis.mass))
     return ChainModes(_reduced(model, component, basis), np.tensordot(half, basis.shape, 1))

@@ -20,7 +20,8 @@ import numpy as np
 
 from ..base.array import Complex, Flags, Index, Real
 from ..base.errors import SceneError, SolveError
-from ..chain.compiled import Compiled
+from ..chain.chain import Chain
+from ..chain.compiled import Compiled, with_plain_lumps
 from ..chain.port import Point, is_force, locate
 from ..eigen.damped.proportional import Proportional, proportional
 from ..eigen.damped.rates import Rates
@@ -36,6 +37,7 @@ from .undamped import UndampedResponses, losses_of
 LARGEST = 200  # All modes of a chain with so many are taken.
 EQUAL = 1e-9  # Eigenvalues that differ by this share are one, of as many shapes.
 ROUND = 1e-11  # What modes leave of this share is rounding.
+FEW = 16  # Nodes whose damping is not as their mass are points of their own, at most.
 UNMOVED = 1e-20  # Below this share of the largest residue of a point it does not move.
 
 
@@ -101,12 +103,18 @@ class States:
 def without_dashpots(
     model: Compiled, component: tuple[str, ...]
 ) -> tuple[Compiled, tuple[Resistance, ...]]:
-    """Return the model without dashpots of single points on a component, and these."""
+    """Return the model of plain lumps without dashpots of single points on a component, and these.
+
+    So is what a few nodes have beside drag that is everywhere as the mass: a point mass less of it.
+    """
+    model = with_plain_lumps(model, component)
     found = [one for one in _dashpots(model) if one.point[0] in component]
     chain = model.chain
-    if not found or chain.damping is None:
+    if chain.damping is None and chain.drag is None:
         return model, ()
-    damping, kept = chain.damping.copy(), []
+    given = np.zeros_like(chain.mass) if chain.damping is None else chain.damping
+    damping = given.copy()
+    total: dict[Point, float] = {}  # one of a point
     terms: dict[int, int] = {}  # nodes of one term have the same dashpots: taken from it once
     for one in found:
         node = locate(model.x, one.point[1])[0]
@@ -114,20 +122,61 @@ def without_dashpots(
         at = model.coordinates.index(one.point[0])
         if chain.held[term, at]:
             continue
-        kept.append(one)
+        total[one.point] = total.get(one.point, 0.0) + one.damping
         if terms.setdefault(term, node) == node:
             damping[term, at, at] -= one.damping
-    _round_to_mass(damping, chain.mass, 8 * np.finfo(float).eps * np.abs(chain.damping))
-    free = chain._replace(damping=damping if damping.any() else None)
-    return dataclasses.replace(model, chain=free), tuple(kept)
+    kept, total = _beside_drag(model, component, damping, total)
+    free = chain._replace(damping=kept if kept.any() else None)
+    alone = tuple(Resistance(*one) for one in total.items() if one[1])
+    return dataclasses.replace(model, chain=free), alone
 
 
-def _round_to_mass(damping: Real, mass: Real, rounding: Real) -> None:
-    """Let what differs by rounding from drag along the rope, which is as the mass, be that."""
-    ratio = np.divide(damping, mass, out=np.zeros_like(mass), where=mass > 0)
-    for drag in (float(np.median(ratio[mass > 0])) if (mass > 0).any() else 0.0, 0.0):
-        near = np.abs(damping - drag * mass) <= rounding
-        damping[near] = drag * mass[near]
+def _beside_drag(
+    model: Compiled, component: tuple[str, ...], damping: Real, alone: dict[Point, float]
+) -> tuple[Real, dict[Point, float]]:
+    """Leave of damping what is as the mass everywhere, if few nodes have other, beside `alone`."""
+    chain = model.chain
+    own = np.array([model.coordinates.index(c) for c in component])
+    square = np.ix_(np.arange(len(damping)), own, own)
+    free = chain.held[:, own] == 0
+    free &= np.isin(np.arange(len(free)), chain.term)[:, None]
+    mass, resists = (np.einsum("tii->ti", one[square]) for one in (chain.mass, damping))
+    usual = _usual(chain, own, mass, resists, free)
+    apart = resists - usual * mass
+    most = np.abs(resists) if chain.damping is None else np.abs(chain.damping[:, own, own])
+    other = free & (np.abs(apart) > 8 * np.finfo(float).eps * np.maximum(most, np.abs(resists)))
+    left = damping.copy()
+    left[:, own, own] = np.where(free, usual * mass, resists)
+    total = dict(alone)
+    places = np.argwhere(other[chain.term_of]).tolist()
+    for node, i in places:
+        point = (component[i], float(model.x[node]))
+        total[point] = total.get(point, 0.0) + float(apart[chain.term_of[node], i])
+    couples = (damping[square] * (1 - np.eye(len(own)))).any()
+    # less drag than none would drive modes that are left out
+    drives = min(total.values(), default=0.0) < 0 and not _has_all_modes(model, component)
+    if len(places) > FEW or couples or drives:
+        return damping, alone
+    return left, total
+
+
+def _usual(chain: Chain, own: Index, mass: Real, resists: Real, free: Flags) -> float:
+    """Return what damping is over mass in most places [1/s]."""
+    if chain.inertia is None:
+        moves = ((mass > 0) & free)[chain.term_of]
+        ratio = np.divide(resists, mass, out=np.zeros_like(mass), where=mass > 0)[chain.term_of]
+    else:
+        element = np.unique(chain.element)
+        inertia = chain.inertia[element][:, own]
+        drag = np.zeros_like(inertia) if chain.drag is None else chain.drag[element][:, own]
+        moves = inertia > 0
+        ratio = np.divide(drag, inertia, out=np.zeros_like(drag), where=moves)
+    return float(np.median(ratio[moves])) if moves.any() else 0.0
+
+
+def _has_all_modes(model: Compiled, component: tuple[str, ...]) -> bool:
+    chain = model.chain.only(component)
+    return chain.finite is not None and chain.free <= LARGEST
 
 
 def _dashpots(model: Compiled) -> list[Resistance]:
@@ -223,8 +272,8 @@ def _eigenvalues(
     model: Compiled, component: tuple[str, ...], modes: int
 ) -> tuple[Real, float, Real]:
     """Return those of the modes, the angular frequency of the next, and the errors."""
-    chain = model.chain.only(component)
-    wanted = chain.finite if chain.finite is not None and chain.free <= LARGEST else modes
+    finite = model.chain.only(component).finite
+    wanted = finite if finite is not None and _has_all_modes(model, component) else modes
     value, error = spectrum(model, component, wanted + 1)
     beyond = float(np.sqrt(max(value[wanted], 0.0))) if len(value) > wanted else np.inf
     value, error = value[:wanted], error[:wanted]

@@ -42,7 +42,7 @@ from .smooth.laws import LawFailure, SmoothLaw
 from .smooth.smooth import scale
 
 FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, of a second run at least and at most, or
-RUNS = 4  # so many times those of the first: three runs.
+RUNS = 6  # so many times those of the first: three runs.
 SHARPER = 0.05  # Linear motion is known to this part of the tolerance, if it can be,
 SHAPED = 0.25  # from shapes and velocities to this.
 TIMES = 2.0  # A run is off by so many times its distance to one with steps twice as long, or what
@@ -60,14 +60,16 @@ class CoreActing(NamedTuple):
     told: list[SmoothLaw]  # as messages name them
     kind: NDArray[np.int32]
     value: Real
+    is_sharp: bool  # whether some bend or jump where contact begins or velocities turn
 
     @classmethod
     def of(cls, model: Compiled) -> CoreActing:
         """Return the laws of a model."""
         found = acting_laws(model)
         told = [SmoothLaw(one.name, one.law.call) for one in found]
+        numbers = core_numbers([one.law for one in found])
         return cls(
-            tuple(one.point for one in found), told, *core_numbers([one.law for one in found])
+            tuple(one.point for one in found), told, *numbers, any(one.is_sharp for one in found)
         )
 
     @property
@@ -223,9 +225,9 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
         try:
             found = stepped.moved()
         except Ended as ended:
-            if not isinstance(ended.error, Unsettled) or 2 * count > most_steps:
+            if not isinstance(ended.error, Unsettled) or _finer(run, laws, count) > most_steps:
                 raise
-            count, before, apart = 2 * count, None, np.inf
+            count, before, apart = _finer(run, laws, count), None, np.inf
             continue
         if before is not None:
             now = np.maximum.accumulate(np.abs(found.value - before.value), axis=1)
@@ -236,12 +238,23 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
             if (known.error <= most).all():
                 return stepped, known
             # shorter steps do not help where linear motion is not known
-            if 2 * count > most_steps or (np.minimum(found.error, before.error) > most).any():
+            if (
+                _finer(run, laws, count) > most_steps
+                or (np.minimum(found.error, before.error) > most).any()
+            ):
                 seen = np.where(np.isfinite(both), both, now)
                 known = found._replace(error=found.error + TIMES * seen)
                 raise _unknown(run, tolerance, count, known)
             apart = np.maximum(now, np.where(np.isfinite(apart), apart / FORGETS, 0.0))
-        count, before = 2 * count, found
+        count, before = _finer(run, laws, count), found
+
+
+def _finer(run: Run, laws: CoreActing, count: int) -> int:
+    """Return how many steps the next run takes: ends of others would see a turn as they did."""
+    times = len(run.time) - 1
+    if not laws.is_sharp or (is_even(run.time) and count < times):
+        return 2 * count
+    return 2 * count + (times if is_even(run.time) else 1)
 
 
 def _first(run: Run) -> int:

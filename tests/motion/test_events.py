@@ -5,6 +5,7 @@ import time as clock
 
 import numpy as np
 import pytest
+from dense_motion import Dense
 from mass_on_a_string import AMPLITUDE, LENGTH, MIDDLE, PERIOD, STIFFNESS, coulomb, mass_on_a_string
 from scipy.integrate import solve_ivp
 
@@ -265,6 +266,115 @@ def test_samples_and_blows_are_forces_too():
         for f in (rd.Impulse(0.01, time=0.001), short)
     )
     assert np.abs(blow.value - hit.value).max() < 1e-3 * np.abs(hit.value).max()
+
+
+@pytest.mark.parametrize("damping", [rd.RayleighDamping(0.5, 1e-5), None, DRAG])
+def test_a_jump_of_force_between_nodes_does_work_on_the_element(damping):
+    scene = rd.Scene(ROPE, tension=100.0, damping=damping)
+    time, asked = np.linspace(0.0, 0.4, 301), {"drive": ("z", 0.1), "force": rd.Step(2.0, time=0.1)}
+    plain, beside = (
+        one.compile(elements=4, element="rigid").transient(time, **asked, response=("z", 0.1))
+        for one in (scene, scene.replace(parts=[rd.Stop(0.5, 1e4, gap=9.0)]))
+    )
+    assert (plain.cost.method, beside.cost.method) == ("modal", "events")
+    for name in ("kinetic", "strain", "input", "dissipated"):
+        apart = np.abs(plain.energy[name] - beside.energy[name]).max()
+        assert apart <= 1e-11 * np.abs(plain.energy["input"]).max()  # measured: 3e-13
+
+
+def test_a_stop_that_is_never_met_is_none_beside_lumps_of_negative_inertia():
+    """They move before what moves them: phases have plain lumps in their place."""
+    end = rd.End(z="free", beta="free", spring={"z": 150.0})
+    scene = rd.Scene(
+        rd.Rope(1.0, 1.0, bending_stiffness=0.3),
+        tension=100.0,
+        ends=("clamped", end),
+    )
+    beside = scene.replace(parts=[rd.Stop(1.0, 1e3, gap=9.0)])
+    model, time = beside.compile(elements=5), np.linspace(0.0, 0.5, 201)
+    drive = ("z", 1.0)
+    history = model.transient(time, drive=drive, force=rd.Sine(3.0, 6.0), response=drive)
+    exact = Dense(scene.compile(elements=5))
+    push = exact.load(drive, 3.0)
+    motion = exact.motion(time, load=push, omega=12 * np.pi, phase=0.0)[0][:, exact.at(*drive)]
+    assert history.cost.method == "events"
+    assert np.abs(history.value[0] - motion).max() <= 1e-10 * np.abs(motion).max()
+
+
+DRAGGED = [rd.Dashpot(0.75, 14.0, exponent=0.0), rd.PointMass(0.5, 0.2), rd.Dashpot(0.5, 2.0)]
+LIGHT = rd.Rope(1.0, 0.25)
+
+
+@pytest.mark.parametrize(
+    "acts",
+    [
+        {"drive": ("z", 0.75), "force": rd.Impulse(0.4)},
+        {"drive": ("z", 0.25), "force": rd.Sine(80.0, 50.0)},
+        {"drive": ("z", 0.25), "force": rd.Impulse(0.4, time=0.013)},
+    ],
+)
+def test_drag_beside_a_mass_is_that_of_dashpots_at_all_nodes(acts):
+    """A mass has less drag than the rope; the first dashpot and the mass share a node."""
+    scene = rd.Scene(LIGHT, tension=2000.0, damping=rd.ViscousDamping(3.0), parts=DRAGGED)
+    nodes = [rd.Dashpot(x, 3.0 / 4) for x in (0.25, 0.5, 0.75)]
+    whole, lumps = (
+        one.compile(elements=4, element="rigid")
+        for one in (scene, scene.replace(damping=None, parts=[*DRAGGED, *nodes]))
+    )
+    time, asked = np.linspace(0.0, 0.1, 41), {"response": [("z", 0.5), ("z", 0.75)]}
+    history, other = (one.transient(time, **acts, **asked) for one in (whole, lumps))
+    assert history.cost.method == other.cost.method == "events"
+    most = np.abs(other.value).max()
+    assert np.abs(history.value - other.value).max() <= 1e-12 * most  # measured: 1e-14
+
+
+def test_dashpots_of_one_point_are_one():
+    parts = [rd.Stop(0.75, 1e4, gap=1e-3), rd.Dashpot(0.5, 3.0)]
+    one = rd.Scene(LIGHT, tension=2000.0, parts=parts)
+    two = one.replace(parts=[parts[0], rd.Dashpot(0.5, 1.0), rd.Dashpot(0.5, 2.0)])
+    time = np.linspace(0.0, 0.05, 51)
+    asked = {"drive": ("z", 0.25), "force": rd.Sine(80.0, 50.0), "response": ("z", 0.5)}
+    value, other = (scene.compile().transient(time, **asked).value for scene in (one, two))
+    assert np.abs(value - other).max() <= 1e-12 * np.abs(value).max()  # measured: equal
+
+
+def test_drag_beside_a_mass_on_continuous_spans_is_that_of_fine_chains():
+    parts = [*DRAGGED, rd.Dashpot(0.5, 3.0)]
+    scene = rd.Scene(LIGHT, tension=2000.0, damping=rd.ViscousDamping(3.0), parts=parts)
+    time = np.linspace(0.0, 0.05, 101)
+    asked = {"response": ("z", 0.5), "drive": ("z", 0.25), "force": rd.Sine(80.0, 50.0)}
+    spans = scene.compile().transient(time, **asked)
+    chain = scene.compile(elements=128, element="rigid").transient(time, **asked)
+    assert spans.cost.method == chain.cost.method == "events"
+    apart = np.abs(spans.value - chain.value).max()
+    assert apart <= 1e-2 * np.abs(spans.value).max()  # measured: 3e-3
+
+
+def test_a_point_that_is_held_for_ever_is_known_to_rounding():
+    scene = rd.Scene(
+        LIGHT,
+        tension=2000.0,
+        damping=rd.ViscousDamping(3.0),
+        parts=[rd.Dashpot(0.75, 200.0, exponent=0.0), rd.PointMass(0.5, 0.2)],
+    )
+    model, time = scene.compile(elements=4, element="rigid"), np.linspace(0.0, 0.1, 41)
+    held = ("z", 0.75)
+    history = model.transient(
+        time, drive=("z", 0.25), force=rd.Step(20.0), response=[held, ("z", 0.5)]
+    )
+    assert (np.abs(history.value[0]) <= history.error[0]).all()
+    assert history.error[0].max() <= 1e-13 * np.abs(history.value[1]).max()
+
+
+@pytest.mark.parametrize("last", np.linspace(0.4, 0.44, 25))
+def test_the_last_time_is_answered_wherever_the_last_event_is(last):
+    string = rd.Scene(rd.Rope(2.6, 0.41), tension=3700.0, parts=[rd.Dashpot(1.3, 20.0, exponent=0)])
+    model = string.compile(elements=2, element="rigid")
+    blow = {"drive": ("z", 1.3), "force": rd.Impulse(0.85, time=0.026485137887149717)}
+    history = model.transient([0.0, 0.2, last], **blow, response=("z", 1.3))
+    # it has come to rest
+    assert history.value[0, 1] == pytest.approx(history.value[0, 2], rel=1e-12)
+    assert history.cost.method == "events"
 
 
 def test_answer_is_saved_with_the_time_it_is_sure_until(tmp_path):

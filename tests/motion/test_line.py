@@ -476,6 +476,17 @@ def test_response_that_symmetry_holds_still_is_answered():
     assert np.abs(history.value[1]).max() < 1e-9 * np.abs(history.value[0]).max()
 
 
+@pytest.mark.parametrize("how", [{}, {"elements": 16}])
+def test_the_moment_at_a_pinned_end_is_answered_as_nothing(how):
+    rope, parts = rd.Rope(2.0, 0.5, bending_stiffness=3.0), [rd.Dashpot(0.7, 5.0)]
+    scene = rd.Scene(rope, tension=2000.0, ends=("pinned", "clamped"), parts=parts)
+    asked = {"drive": ("z", 0.9), "force": rd.Sine(1.0, 20.0)}
+    seen = [("M_beta", 0.0), ("z", 1.0)]
+    history = scene.compile(**how).transient(np.linspace(0.0, 0.05, 101), **asked, response=seen)
+    assert (np.abs(history.value[0]) <= history.error[0]).all()
+    assert history.error[0].max() <= 1e-9
+
+
 @pytest.mark.parametrize(
     "asked",
     [

@@ -341,6 +341,23 @@ def test_scenes_without_branches_say_why(change, message):
         duffing(**change).stepped_sine([12.0, 24.0], drive=("z", 0.5), amplitude=1.0, branches=True)
 
 
+def test_values_on_a_steep_part_of_a_branch_are_known_at_their_frequency():
+    """More harmonics moved it across itself, along which a frequency that is off was not told."""
+    parts = [rd.Stop(0.3096, 4.0e4), rd.Stop(0.3096, 1.4e4, gap=0.0046, side=-1)]
+    how = {"damping": rd.ViscousDamping(6.47), "parts": parts}
+    model = rd.Scene(rd.Rope(0.6192, 1.1355), tension=4736.0, **how).compile(elements=2)
+    asked = {"drive": ("z", 0.3096), "amplitude": 50.37, "response": ("z", 0.3096)}
+    branches = model.stepped_sine(np.linspace(28.0, 80.0, 12), **asked, branches=True)
+    off = []
+    for k in np.flatnonzero(np.abs(branches.frequency - 63.0) < 6.0)[::3]:
+        alone = model.stepped_sine([branches.frequency[k]], **asked, tolerance=1e-6)
+        apart = np.abs(branches.value[0, k] / alone.value[0, 0] - 1)
+        if apart < 0.1:  # of the same branch
+            off.append(apart / (branches.rounding_error[0, k] + alone.rounding_error[0, 0]))
+    assert len(off) >= 3
+    assert max(off) <= 1  # it was up to 240
+
+
 def stopped(friction):
     """Return a string with a stop, and what is asked of it, beside friction."""
     parts = [rd.Dashpot(0.25, friction, exponent=0.0), rd.Stop(0.5, 1e3, gap=1e-3)]
@@ -362,7 +379,7 @@ def test_a_point_that_friction_holds_on_branches_does_not_move():
     assert not branches.value[0].any()
     assert not branches.rounding_error[0].any()
     assert branches.value[1].all()
-    assert branches.rounding_error[1].max() < 1e-5
+    assert branches.rounding_error[1].max() < 5e-4  # beside folds; measured: 2e-4
 
 
 def test_one_frequency_has_no_branches():

@@ -31,6 +31,7 @@ from .force_transform import transform
 from .grid import LEAST, Grid, off
 from .images import ringing
 from .jumps import jumps, largest
+from .still import is_still
 from .transfer import TransferFunctions
 
 SHARES = {0.5: 1.2, 0.7: 2.8, 0.85: 4.0}
@@ -61,16 +62,26 @@ REACH = 4.0  # They reach so many times as far as the forces do, at first.
 def invert(run: Run, tolerance: float, kinds: list[str] | None = None) -> Moved:
     """Return the motion, of as many rates as it takes to be within the tolerance."""
     line = Line.of(run, tolerance)
+    still = np.zeros(len(run.responses), dtype=np.bool_)
+    asked = still.copy()
+
+    def late(moved: Moved) -> Real:
+        """Return what errors are of responses that move."""
+        share = moved.shares(kinds)
+        lost = np.flatnonzero(~(share <= 1) & ~asked)
+        still[lost], asked[lost] = [is_still(run, int(r)) for r in lost], True
+        return np.asarray(np.where(still, 0.0, share))
+
     while True:
         with np.errstate(all="ignore"):  # numbers that are not finite are refused
             moved = line.motion()
         if not np.isfinite(moved.value).all():
             raise SolveError("the numbers overflow: check the units and the times")
         # rounding is asked for where nothing else is in the way
-        share = moved.shares(kinds)
+        share = late(moved)
         if (share <= tolerance).all() or not line.reaches(2):
             moved = line.rounded(moved)
-            if (moved.shares(kinds) <= tolerance).all() or not line.reaches(2):
+            if (late(moved) <= tolerance).all() or not line.reaches(2):
                 line.refuse_infinite(moved)
                 return moved
         # what is still but for rounding tells nothing of rates

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import _core
-from ...base.array import Index, Real
+from ...base.array import Real
 from ...scene.force import Samples
 from .exponentials import Oscillators, is_uniform, ramp, rates
 
@@ -123,7 +124,7 @@ class _Steps(NamedTuple):
     read: Real  # (size, responses, 2, k)
     local: Real  # (size, responses, size)
 
-    def followed(self, kind: Index, sample: Real, state: Real) -> tuple[Real, Real]:
+    def followed(self, kind: NDArray[np.int32], sample: Real, state: Real) -> tuple[Real, Real]:
         """Return responses at all samples but the last, and the state there, (2, k)."""
         size, modes = len(self.local), state.shape[-1]
         change, gain, read, state = map(_grouped, (self.change, self.gain, self.read, state))

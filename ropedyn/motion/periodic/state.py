@@ -17,6 +17,10 @@ TOLERANCE = 1e-5  # Of the steady state where none is given.
 SCALE = 0.05  # Of a frequency: steps of a branch are measured in it.
 SMALL = 1e-6  # Motion below this part of that of the linear scene is as good as none.
 BATCH = 1 << 15  # Numbers of matrices that are solved together.
+AHEAD = 1e-5  # Forces are looked at so much farther along a branch, in its steps.
+BENDS = 2.0  # Near a fold a frequency that is off by df moves along it by sqrt(BENDS df/SCALE f).
+TIMES = 4.0  # Steps of branches are off by so much more: where they are steep, all of it is seen.
+FALLS = 4.0  # Twice as many harmonics change a motion by so much less at most, as far as is known.
 ALIKE = 0.1  # More harmonics that move a motion by more may have found another one.
 
 
@@ -29,7 +33,10 @@ class SteadyState(NamedTuple):
     push: Complex = np.zeros(0, dtype=np.complex128)
     """The forces of points at the frequency of the drive, per amplitude, (points,)."""
     change: Complex = np.zeros(0, dtype=np.complex128)
-    """Of them, by the last harmonics."""
+    """Of them, by the last harmonics, at the same frequency."""
+    across: Complex = np.zeros(0, dtype=np.complex128)
+    """Of them, across the branch."""
+    turns: bool = False  # whether it is near a fold, where frequencies tell little
     moved: float = 0.0  # how far they moved a step or fold [Hz]
 
     @property
@@ -73,10 +80,15 @@ def settled(driven: Driven, states: list[SteadyState]) -> list[SteadyState] | No
     left = np.full(len(rough), np.inf)
     while len(rough):
         if 2 * balance.harmonics > MOST * balance.turn:
-            raise SolveError(
-                f"frequency {found[rough[0]].frequency:.9g} Hz: with {balance.harmonics} harmonics "
-                f"the amplitude is still known to {left[0]:.1e} only: ask for a larger tolerance"
-            )
+            lost = [_as_asked(found[k]) for k in rough]
+            left = _felt(driven, lost) if np.isfinite(left).all() else left
+            if (left > tolerance).any():
+                raise SolveError(
+                    f"frequency {lost[int(left.argmax())].frequency:.9g} Hz: with "
+                    f"{balance.harmonics} harmonics the amplitude is still known to "
+                    f"{left.max():.1e} only: ask for a larger tolerance"
+                )
+            break
         balance = driven.balance(2 * balance.harmonics // balance.turn, balance.turn)
         finer = _finer(driven, balance, [found[k] for k in rough])
         if finer is None:
@@ -88,32 +100,67 @@ def settled(driven: Driven, states: list[SteadyState]) -> list[SteadyState] | No
     return found
 
 
+def _as_asked(state: SteadyState) -> SteadyState:
+    """Return a step as it is across the branch: nobody asked for it, and its error is said."""
+    return state if state.kind == "asked" else state._replace(change=state.across)
+
+
 def _finer(
     driven: Driven, balance: HarmonicBalance, states: list[SteadyState]
 ) -> list[SteadyState] | None:
     """Return states with more harmonics, None where they lead to another motion."""
     narrow, branch = states[0].balance, by_frequency(driven, balance)
-    near = [one.place._replace(x=narrow.wider(one.place.x, balance.harmonics)) for one in states]
+    near = [_wider(narrow, one.place, balance.harmonics) for one in states]
     places = _exact(branch, states, near)
     if places is None:
         return None
     for k, one in enumerate(states):
         if one.kind != "asked":
             # across the branch: its place may move along it
-            along = narrow.wider(one.place.along, balance.harmonics)
-            reached = branch.reached(places[k]._replace(along=along), 0.0)
+            reached = branch.reached(places[k], 0.0)
             if reached is None:
                 return None
             places[k] = reached[0]
     finer = [one._replace(balance=balance, place=place) for one, place in zip(states, places)]
+    pushes, slopes = _along(balance, finer)
     found = []
-    for one, before, push in zip(finer, states, _per_amplitude(balance, _forces(finer))):
+    for one, before, push, slope in zip(finer, states, pushes, slopes):
         start = narrow.wider(before.place.x, balance.harmonics)
         if np.linalg.norm(one.place.x - start) > ALIKE * np.linalg.norm(start):
             return None
-        moved = abs(one.place.p - before.place.p) / (2 * np.pi)
-        found.append(one._replace(push=push, change=push - before.push, moved=moved))
+        off = one.place.p - before.place.p
+        # along the branch by so much, back to the frequency that it had
+        most = np.sqrt(BENDS * abs(off) / branch.scale)
+        back = off / one.place.up if one.kind == "step" and off else 0.0
+        across, moved = push - before.push, abs(off) / (2 * np.pi)
+        change = across - slope * float(np.clip(back, -most, most))
+        change *= TIMES if one.kind == "step" else 1.0
+        # forces with corners fall by chance
+        change = np.where(
+            np.abs(before.change) > FALLS * np.abs(change), before.change / FALLS, change
+        )
+        own = one._replace(push=push, change=change, across=across, moved=moved)
+        found.append(own._replace(turns=bool(abs(back) > most)))
     return found
+
+
+def _wider(narrow: HarmonicBalance, place: Place, harmonics: int) -> Place:
+    """Return a place with more harmonics, the new ones 0."""
+    x, along = (narrow.wider(one, harmonics) for one in (place.x, place.along))
+    return place._replace(x=x, along=along)
+
+
+def _along(balance: HarmonicBalance, states: list[SteadyState]) -> tuple[Complex, Complex]:
+    """Return the forces at the frequency of the drive, and how they change along a branch."""
+    ahead = [
+        one._replace(
+            place=place._replace(x=place.x + AHEAD * place.along, p=place.p + AHEAD * place.up)
+        )
+        for one in states
+        for place in [one.place]
+    ]
+    here, there = (_per_amplitude(balance, _forces(some)) for some in (states, ahead))
+    return here, (there - here) / AHEAD
 
 
 def _exact(branch: Branch, states: list[SteadyState], near: list[Place]) -> list[Place] | None:
@@ -150,6 +197,9 @@ def _felt(driven: Driven, states: list[SteadyState]) -> Real:
     omega = 2 * np.pi * np.array([one.frequency for one in states])
     H = driven.transfer.at(omega)[:, : len(driven.points)]
     push, change = (np.array([getattr(one, name) for one in states]) for name in ("push", "change"))
+    for k, one in enumerate(states):
+        if one.turns:  # `fold_error` tells how far its frequency is off
+            change[k] = one.across
     motion = np.einsum("fip,fp->fi", H[..., :-1], push) + H[..., -1]
     moved = np.einsum("fip,fp->fi", H[..., :-1], change)
     return np.asarray(np.abs(moved).max(axis=1) / np.abs(motion).max(axis=1))

@@ -28,6 +28,11 @@ class Forcing(NamedTuple):
     level: Real  # (drives,)
     slope: Real  # (drives,)
 
+    def at(self, time: Real) -> Real:
+        """Return the forces at times (t,), shape (drives, t)."""
+        wave = (self.wave @ np.exp(np.multiply.outer(self.rate, time))).real
+        return np.asarray(wave + self.level[:, None] + np.multiply.outer(self.slope, time))
+
 
 class UnderDrives(NamedTuple):
     """z over time, as in the head of the file."""

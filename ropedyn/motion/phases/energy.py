@@ -25,6 +25,7 @@ from .walk import PhaseWalk, Visit
 NAMES = ("kinetic", "strain", "input", "dissipated", "laws")
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 TURN = 2.0  # Between two times of a rule of Gauss the fastest motion turns by this angle.
+RELAXED = 2.0 ** np.arange(-1, 6)  # What modes leave out follows a jump in so many of its times.
 FAINT = 1e-14  # Motion with less than this part of the energy is not resolved.
 
 
@@ -64,13 +65,13 @@ def _component(run: Run, one: Moving) -> Real:
     before = None
     forces = [run.forces[k] for k in one.drives]
     for visit in PhaseWalk(one.system).visits(rest(one, 0.0), pieces(forces, run.time)):
-        edges = _edges(visit, run.time)
-        stored = _stored(one, _look(run, one, visit, edges))
+        edges = _edges(one, visit, run.time)
+        stored = _stored(one, _look(one, visit, edges))
         if before is not None:
             done[0] += stored[:, 0].sum() - before
         before = stored[:, -1].sum()
         nodes = (edges[:-1, None] + np.multiply.outer(np.diff(edges), (NODES + 1) / 2)).ravel()
-        power = _powers(one, visit, _look(run, one, visit, nodes))
+        power = _powers(one, visit, _look(one, visit, nodes))
         each = power.reshape(2, -1, len(NODES)) @ (WEIGHTS / 2) * np.diff(edges)
         gone = done[:, None] + np.concatenate([np.zeros((2, 1)), each.cumsum(axis=1)], axis=1)
         done = gone[:, -1]
@@ -82,10 +83,12 @@ def _component(run: Run, one: Moving) -> Real:
     return result
 
 
-def _edges(visit: Visit, time: Real) -> Real:
+def _edges(one: Moving, visit: Visit, time: Real) -> Real:
     """Return the times of a visit, with so many between that its motion is resolved."""
     inside = time[(time > visit.start) & (time < visit.stop)]
-    edges = np.concatenate([[visit.start], inside, [visit.stop]])
+    soon = visit.start + one.system.states.gamma * RELAXED * one.system.late
+    soon = soon[(soon > visit.start) & (soon < visit.stop)]
+    edges = np.unique(np.concatenate([[visit.start], soon, inside, [visit.stop]]))
     rate, own = np.abs(visit.phase.poles.rate), visit.driven.own
     right = visit.phase.poles.right[: visit.phase.matrices.E.shape[1]]
     size = np.abs(right * own).max(axis=0, initial=0.0)
@@ -99,15 +102,14 @@ def _edges(visit: Visit, time: Real) -> Real:
     return np.append(first + number * step, edges[-1])
 
 
-def _look(run: Run, one: Moving, visit: Visit, time: Real) -> _Seen:
+def _look(one: Moving, visit: Visit, time: Real) -> _Seen:
     system, since = one.system, time - visit.start
     state, seen = visit.state(), visit.outputs
     k, laws = system.states.modes, len(system.laws.points)
     x, y = state.at(since), seen.at(since)
     speed = seen.derivative().some(slice(0, system.responses + laws)).at(since)
     given = np.zeros((system.first, len(time)))
-    for n, d in enumerate(one.drives):
-        given[n] = run.forces[d].value(time)
+    given[: system.drives] = visit.driven.push.at(since)  # at its end what acts until then
     force = np.concatenate([given, y[system.responses + laws :]])
     slow = state.derivative().some(slice(2 * k, None)).at(since)
     return _Seen(x[:k], x[k : 2 * k], y[: len(speed)], speed, force, x[2 * k :], slow)

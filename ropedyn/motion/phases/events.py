@@ -25,6 +25,7 @@ from .walk import PhaseWalk, Visit
 MODES, MOST = 64, 128  # Of continuous spans and long chains, at first and at most.
 NUDGE = 1e-11  # Rounding is at most this part of what drives.
 MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.
+ROUNDED = 256 * np.finfo(float).eps  # Of the modes that move a point, what rounding moves it.
 HELD = 1e-9  # Of the modes that move a point: where it moves less, it is held.
 
 
@@ -126,10 +127,10 @@ def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
     coarse = follow(run, looks[:1], max(modes // 2, 1), NUDGE)
     if coarse.whole:
         found = follow(run, looks, modes // 2)
-        return found, _running(found.seen[0] - coarse.seen[0])
+        return found, _running(found.seen[0] - coarse.seen[0]) + _rounding(found)
     while True:
         found = follow(run, looks, modes)
-        error = _running(MARGIN * (found.seen[0] - coarse.seen[0]))
+        error = _running(MARGIN * (found.seen[0] - coarse.seen[0])) + _rounding(found)
         if (error <= least * _largest(found)).all() or run.modes or 2 * modes > MOST:
             return found, error
         coarse, modes = found, 2 * modes
@@ -138,6 +139,11 @@ def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
 def _running(difference: Real) -> Real:
     """Return the largest difference up to each time: what is off does not come back."""
     return np.maximum.accumulate(np.abs(difference), axis=1)
+
+
+def _rounding(found: Followed) -> Real:
+    """Return what rounding leaves of modes that cancel, as where a point is held."""
+    return ROUNDED * found.size[0][:, None]
 
 
 def _largest(found: Followed) -> Real:

@@ -117,7 +117,9 @@ class PhaseWalk:
                 event = guards.first_crossing(scale, piece.stop - time)
                 last = piece.stop - time if event is None else event.time
                 if last > 0:
-                    yield Visit(time, time + last, phase, driven, whole, now.hold)
+                    # what lasts to the end of a piece ends there, to the last digit
+                    stop = piece.stop if event is None else time + last
+                    yield Visit(time, stop, phase, driven, whole, now.hold)
                 now = self._leave(phase, driven, now, last)
                 if event is None:
                     break

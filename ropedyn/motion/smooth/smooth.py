@@ -92,7 +92,7 @@ def _is_taken(model: Compiled, component: tuple[str, ...]) -> bool:
     if not laws:
         return True
     plain = without_dashpots(model, component)[0].chain.only(component)
-    if plain.spurious or _has_no_inertia(model, component, laws):
+    if model.chain.only(component).spurious or _has_no_inertia(model, component, laws):
         return False
     return proportional(plain, Rates.of(model.scene.dampings)) is not None
 
@@ -182,11 +182,12 @@ def agree(
         hard += not passed.settles
         if passed.error is not None and (passed.settles or hard > HARD):
             return found
-        coarse, bent, h = looked if passed.error is None else None, passed.bent, h / 2
+        coarse, bent = looked if passed.error is None else None, passed.bent
+        h /= system.finer
         if span / h > MOST_STEPS:
             found.error = SolveError(
                 f"tolerance {tolerance:g} needs more than {MOST_STEPS} steps: with "
-                f"{round(span / h / 2)} the error is {worst:.3g}"
+                f"{round(span / h / system.finer)} the error is {worst:.3g}"
             )
             return found
 

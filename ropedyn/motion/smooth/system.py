@@ -80,6 +80,11 @@ class LawSystem:
         return math.inf
 
     @property
+    def finer(self) -> float:
+        """How much shorter the steps of the next run are."""
+        return 2.0
+
+    @property
     def breaks(self) -> list[float]:
         """When what drives jumps or bends [s]."""
         return [at for one in self.pushes if not isinstance(one, float) for at in one.breaks]
