@@ -20,6 +20,11 @@ def _by_events(run: Run) -> History:
     whole = run.but(partial=False)
     try:
         return solve_events(whole)
+    except KeyboardInterrupt as stop:
+        history = getattr(stop, "history", None)
+        if run.partial and history is not None and len(history.time):
+            return cast("History", history)
+        raise
     except SolveError as refusal:
         with suppress(SolveError):
             return integrate(whole)

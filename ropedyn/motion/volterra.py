@@ -181,7 +181,7 @@ def integrate(run: Run) -> History:
     refuse_losses(run.model)
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
     try:
-        stepped, moved = _agreed(run, tolerance)
+        stepped, moved, stopped = _agreed(run, tolerance)
     except Ended as ended:
         return _ended(run, ended)
     x, snapshot = snapshots_of(stepped.pushed().but(tolerance=tolerance))
@@ -195,6 +195,7 @@ def integrate(run: Run) -> History:
         error=moved.error,
         mesh_error=partial(against_spans, kept, moved.value, integrate),
         balance=partial(of_chain, kept),
+        stopped=ended_by(stopped),
     )
 
 
@@ -214,20 +215,24 @@ def _ended(run: Run, ended: Ended) -> History:
     raise error
 
 
-def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
-    """Halve the steps until two runs agree within the tolerance."""
+def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException | None]:
+    """Halve the steps until two runs agree within the tolerance, or until Ctrl-C."""
     count, before = _first(run), None
     most_steps = max(MOST_STEPS, RUNS * count)
     apart: Real | float = np.inf
     laws = CoreActing.of(run.model)
+    coarse: tuple[Stepped, Moved] | None = None
     while True:
         stepped = Stepped(run, laws, count, tolerance)
         try:
             found = stepped.moved()
-        except Ended as ended:
-            if not isinstance(ended.error, Unsettled) or _finer(run, laws, count) > most_steps:
+        except (KeyboardInterrupt, Ended) as ended:
+            error = ended.error if isinstance(ended, Ended) else ended
+            if isinstance(error, KeyboardInterrupt) and coarse is not None and run.partial:
+                return *coarse, error
+            if not isinstance(error, Unsettled) or _finer(run, laws, count) > most_steps:
                 raise
-            count, before, apart = _finer(run, laws, count), None, np.inf
+            count, before, apart, coarse = _finer(run, laws, count), None, np.inf, None
             continue
         if before is not None:
             now = np.maximum.accumulate(np.abs(found.value - before.value), axis=1)
@@ -236,7 +241,7 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
             known = found._replace(error=found.error + TIMES * both)
             most = tolerance * scale(found.value)[:, None]
             if (known.error <= most).all():
-                return stepped, known
+                return stepped, known, None
             # shorter steps do not help where linear motion is not known
             if (
                 _finer(run, laws, count) > most_steps
@@ -246,6 +251,7 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
                 known = found._replace(error=found.error + TIMES * seen)
                 raise _unknown(run, tolerance, count, known)
             apart = np.maximum(now, np.where(np.isfinite(apart), apart / FORGETS, 0.0))
+        coarse = stepped, found._replace(error=np.full(found.value.shape, np.inf))
         count, before = _finer(run, laws, count), found
 
 

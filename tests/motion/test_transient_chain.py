@@ -8,6 +8,7 @@ import pytest
 from dense_motion import Dense
 
 import ropedyn as rd
+from ropedyn import _core
 
 ROPE = rd.Rope(
     1.0, 0.1, bending_stiffness=0.5, torsional_stiffness=2.0, polar_inertia=1e-5, lay_slope=0.1
@@ -434,3 +435,38 @@ def test_energy_balances_where_dampers_couple_modes(part, force, claim):
     kept = e["kinetic"] + e["strain"] - e["input"] + e["dissipated"]
     assert e["dissipated"][-1] > 0.01 * e["strain"][0]
     claim(np.ptp(kept) / (e["kinetic"] + e["strain"]).max())
+
+
+def test_ctrl_c_leaves_what_phases_had_told():
+    parts = [rd.Stop(0.25, 1e4, gap=1e-4), rd.Dashpot(0.5, 0.5, exponent=0.0)]
+    model = STRING.replace(parts=parts).compile(elements=8)
+    time = np.linspace(0.0, 1.0, 2001)
+    asked = {"drive": ("z", 0.5), "force": rd.Sine(20.0, 30.0), "response": ("z", 0.25)}
+    whole = model.transient(time, **asked)
+    part = model.transient(time, progress=interrupt, partial=True, **asked)
+    assert (part.cost.method, part.stopped) == ("events", "interrupted")
+    assert 1000 <= len(part.time) < 2001
+    assert np.abs(part.value - whole.value[:, : len(part.time)]).max() < 1e-9 * whole.value.max()
+    with pytest.raises(KeyboardInterrupt):
+        model.transient(time, progress=interrupt, **asked)
+
+
+def test_ctrl_c_between_blocks_of_steps_leaves_those_before(monkeypatch):
+    """It came from the core or the recording of a block, and nothing was left."""
+    model = STRING.replace(parts=[LAW]).compile(elements=2)
+    time = np.linspace(0.0, 20.0, 2001)
+    asked = {"start": PLUCK, "response": ("z", 0.5)}
+    steps, calls = _core.collocate, []
+    monkeypatch.setattr("ropedyn.motion.smooth.passage.BLOCK", 1 << 10)
+
+    def stopped(*given):
+        calls.append(1)
+        if len(calls) == 4:
+            raise KeyboardInterrupt
+        return steps(*given)
+
+    monkeypatch.setattr("ropedyn._core.collocate", stopped)
+    part = model.transient(time, partial=True, **asked)
+    assert part.stopped == "interrupted"
+    assert 1 < len(part.time) < 2001
+    assert np.isinf(part.error).all()

@@ -14,7 +14,7 @@ from ..smooth.passage import LawPassage, Passed, Steps
 from ..smooth.system import OutputTimes
 from .system import CoupledSystem
 
-BLOCK = 1 << 21  # So many numbers of states are kept at a time.
+BLOCK = 1 << 18  # So many numbers of states are kept at a time.
 
 
 class Stepper:
@@ -96,10 +96,8 @@ class CoupledPassage(LawPassage):
                 error = self._failed(when, *found.error)
                 settles = found.error[1] is not None
                 return Passed(self.looked, when, done, error, settles)
-            try:
-                progress(done / (len(known) - 1))
-            except KeyboardInterrupt as error:
-                return Passed(self.looked, block.end, done, error)
+            self.reached, self.done = block.end, done
+            progress(done / (len(known) - 1))
         return Passed(self.looked, float(system.time[-1]), done)
 
     def _edges(self) -> Real:

@@ -91,8 +91,8 @@ def _in_blocks(modes: Oscillators, h: float, sample: Real) -> Real:
     padded = np.append(sample, np.full(blocks * size + 1 - len(sample), sample[-1]))
     kind, state = np.zeros(blocks, dtype=np.int32), np.zeros((2, len(modes.sigma)))
     gain = np.concatenate([held[-1:], grown[::-1]])[None]
-    steps = _Steps(part[-1:, FREE], gain, read, local)
-    return steps.followed(kind, padded, state)[0][:, : len(sample)]
+    table = _Blocks(part[-1:, FREE], gain, read, local)
+    return table.followed(kind, padded, state)[0][:, : len(sample)]
 
 
 def _step_by_step(modes: Oscillators, h: Real, sample: Real) -> Real:
@@ -103,9 +103,9 @@ def _step_by_step(modes: Oscillators, h: Real, sample: Real) -> Real:
         lengths, which = np.unique(h[begin : begin + KINDS], return_inverse=True)
         part = changes(modes.sigma, modes.square, lengths)
         gain = np.stack([part[:, HELD], part[:, RAMP]], axis=1)
-        steps = _Steps(part[:, FREE], gain, read, local)
+        table = _Blocks(part[:, FREE], gain, read, local)
         now = sample[begin : begin + KINDS + 1]
-        found, state = steps.followed(which.astype(np.int32), now, state)
+        found, state = table.followed(which.astype(np.int32), now, state)
         value.append(found)
     last = np.einsum("rck,ck->r", seen, state)
     return np.concatenate([*value, last[:, None]], axis=1)
@@ -116,7 +116,7 @@ def _seen(modes: Oscillators) -> Real:
     return np.stack([modes.a, modes.b], axis=1)
 
 
-class _Steps(NamedTuple):
+class _Blocks(NamedTuple):
     """Blocks of samples that modes go through, of some kinds; see csrc/base/recurrence.h."""
 
     change: Real  # (kinds, 4, k)

@@ -14,7 +14,7 @@ from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
-from ..history import History
+from ..history import History, ended_by
 from ..moved import against_spans
 from ..request import TOLERANCE, Run
 from .components import Look, moving_components, rest, why_not_events
@@ -37,6 +37,7 @@ class Followed(NamedTuple):
     events: list[float]  # [s]
     whole: bool  # whether no mode is left out
     modes: int
+    until: float = math.inf  # when Ctrl-C ended it [s]
 
 
 def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> Followed:
@@ -44,19 +45,24 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
     seen = [np.zeros((len(one.points), len(one.time))) for one in looks]
     sizes = [np.zeros(len(one.points)) for one in looks]
     events: list[float] = []
-    whole = True
+    whole, until = True, math.inf
     for one in moving_components(run, looks, modes):
-        walk = PhaseWalk(one.system)
+        walk, reached = PhaseWalk(one.system), float(run.time[0])
         forces = [run.forces[k] for k in one.drives]
-        for visit in walk.visits(rest(one, nudge), pieces(forces, run.time, 1 + nudge)):
-            for look, value, size, (rows, which) in zip(looks, seen, sizes, one.watched):
-                moved = visit.size(one.system.states.seen[rows], look.order)
-                size[which] = np.maximum(size[which], moved)
-                _record(visit, look, value, rows=rows, which=which, last=visit.stop >= run.time[-1])
-            run.progress(min(1.0, (visit.stop - run.time[0]) / one.system.span))
+        try:
+            for visit in walk.visits(rest(one, nudge), pieces(forces, run.time, 1 + nudge)):
+                is_last = visit.stop >= run.time[-1]
+                for look, value, size, (rows, which) in zip(looks, seen, sizes, one.watched):
+                    moved = visit.size(one.system.states.seen[rows], look.order)
+                    size[which] = np.maximum(size[which], moved)
+                    _record(visit, look, value, rows=rows, which=which, last=is_last)
+                reached = visit.stop
+                run.progress(min(1.0, (visit.stop - run.time[0]) / one.system.span))
+        except KeyboardInterrupt:
+            until = min(until, reached)
         events += [at for at, _ in walk.events]
         whole = whole and not np.isfinite(one.system.states.beyond)
-    return Followed(seen, sizes, sorted(events), whole, modes)
+    return Followed(seen, sizes, sorted(events), whole, modes, until)
 
 
 def _record(
@@ -88,11 +94,15 @@ def solve_events(run: Run) -> History:
     if len(run.snapshots):
         looks.append(Look(points, run.snapshots, 0))
     found, error = _within(run, looks)
-    value = found.seen[0]
     sure = _sure_until(run, found, error)
     error[:, run.time > sure] = np.inf
     width = len(run.model.coordinates)
     kept = found.seen[1] if len(looks) > 1 else np.zeros((len(points), 0))
+    stopped = KeyboardInterrupt() if math.isfinite(found.until) else None
+    known, shown = run.time < found.until, run.snapshots < found.until
+    run = run.but(time=run.time[known], snapshots=run.snapshots[shown])
+    asked = asked.but(time=run.time, snapshots=run.snapshots)
+    value, error, kept = found.seen[0][:, known], error[:, known], kept[:, shown[: kept.shape[1]]]
     history = History(
         **asked.kept.told,
         value=value,
@@ -103,7 +113,13 @@ def solve_events(run: Run) -> History:
         error=error,
         mesh_error=partial(against_spans, asked.kept.but(partial=True), value, solve_events),
         sure_until=sure,
+        stopped=ended_by(stopped),
     )
+    if stopped is not None:
+        if run.partial and len(run.time):
+            return history
+        stopped.history = history  # type: ignore[attr-defined]
+        raise stopped
     if math.isinf(sure) or run.partial:
         return history
     least = run.tolerance or TOLERANCE
@@ -125,13 +141,18 @@ def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
     least = run.tolerance or TOLERANCE
     modes = run.modes or MODES
     coarse = follow(run, looks[:1], max(modes // 2, 1), NUDGE)
+    if math.isfinite(coarse.until):
+        seen = [np.zeros((len(one.points), len(one.time))) for one in looks[1:]]
+        found = coarse._replace(seen=[*coarse.seen, *seen])
+        return found, np.full(found.seen[0].shape, np.inf)
     if coarse.whole:
         found = follow(run, looks, modes // 2)
         return found, _running(found.seen[0] - coarse.seen[0]) + _rounding(found)
     while True:
         found = follow(run, looks, modes)
         error = _running(MARGIN * (found.seen[0] - coarse.seen[0])) + _rounding(found)
-        if (error <= least * _largest(found)).all() or run.modes or 2 * modes > MOST:
+        ends = bool(run.modes) or 2 * modes > MOST or math.isfinite(found.until)
+        if ends or (error <= least * _largest(found)).all():
             return found, error
         coarse, modes = found, 2 * modes
 

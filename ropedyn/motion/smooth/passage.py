@@ -16,7 +16,7 @@ from .collocation import HIGHEST, STAGES, nodes, tables
 from .laws import LawFailure, core_laws
 from .system import LawSystem, OutputTimes
 
-BLOCK = 1 << 21  # So many numbers of states are kept at a time,
+BLOCK = 1 << 18  # So many numbers of states are kept at a time,
 ROWS = 4096  # and how so many places within a step are seen.
 SNAP = 1e-9  # Times closer to the end of a step than this part of it are there.
 
@@ -80,6 +80,14 @@ class LawPassage:
         self.all_steps = steps_between(system.time, system.breaks, h)
         self.looked = [np.zeros((o.stop - o.start, len(t))) for o, t, _ in system.looks]
         self._rows: dict[tuple[float, float, int], tuple[Real, Real]] = {}
+        self.reached, self.done = float(system.time[0]), 0  # until when [s], in so many steps
+
+    def passed(self, progress: Callable[[float], object]) -> Passed:
+        """Take all steps, or whole blocks of them until Ctrl-C."""
+        try:
+            return self.through(progress)
+        except KeyboardInterrupt as error:
+            return Passed(self.looked, self.reached, self.done * STAGES, error)
 
     def through(self, progress: Callable[[float], object]) -> Passed:
         """Take all steps."""
@@ -108,10 +116,8 @@ class LawPassage:
                 settles = failure is not None
                 return Passed(self.looked, reached, done * STAGES, error, settles)
             force, state = forces[-1], motions[-1]
-            try:
-                progress(done / len(known))
-            except KeyboardInterrupt as error:
-                return Passed(self.looked, reached, done * STAGES, error)
+            self.reached, self.done = reached, done
+            progress(done / len(known))
         bent /= np.maximum(size[2], np.finfo(float).tiny)
         return Passed(self.looked, float(system.time[-1]), done * STAGES, bent=bent)
 

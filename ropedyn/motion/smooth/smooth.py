@@ -147,12 +147,16 @@ def agree(
     linear, h, time = system.without_laws(), system.first_step, system.looks[0].time
     span, worst = float(system.time[-1] - system.time[0]), np.inf
     coarse: list[Real] | None = None
+    last: Agreed | None = None
     apart, bent = np.full(1, np.inf), np.zeros(0)
     stages = hard = 0
     if span / h > MOST_STEPS:
         raise SolveError(f"{span:g} s take {span / h:.2g} steps at least, above {MOST_STEPS}")
     while True:
-        passed = passage(system, h).through(run.progress)
+        passed = passage(system, h).passed(run.progress)
+        if last is not None and isinstance(passed.error, KeyboardInterrupt):
+            last.error = passed.error
+            return last
         stages += passed.stages
         looked = system.told([own + more for own, more in zip(linear, passed.looked)])
         found = Agreed(
@@ -182,6 +186,7 @@ def agree(
         hard += not passed.settles
         if passed.error is not None and (passed.settles or hard > HARD):
             return found
+        last = found if passed.error is None else None
         coarse, bent = looked if passed.error is None else None, passed.bent
         h /= system.finer
         if span / h > MOST_STEPS:
@@ -209,7 +214,7 @@ def component_motion(
         if found.error is not None or not np.isfinite(system.beyond):
             return found
         fewer = LawSystem.of(run, asked, count // 2)
-        passed = LawPassage(fewer, found.h).through(run.progress)
+        passed = LawPassage(fewer, found.h).passed(run.progress)
         found.stages += passed.stages
         looked = fewer.without_laws()[0] + passed.looked[0]
         apart = np.abs(looked - found.looked[0]).max(axis=1, initial=0.0)

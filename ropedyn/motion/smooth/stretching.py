@@ -18,6 +18,7 @@ from .collocation import STAGES, lagrange, nodes
 from .passage import LawPassage, Passed
 from .system import OutputTimes
 
+STEPS = 256  # They are kept a block at a time.
 MOST = 40  # Newton steps.
 ENOUGH, LEAST = 1e-13, 1e-10  # They end here, or here where rounding lets gaps fall no more.
 
@@ -34,7 +35,7 @@ class StretchedPassage(LawPassage):
         state, force, size = np.zeros((2, k)), np.zeros((STAGES, k)), 0.0
         done, before = 0, None
         ahead = lagrange(1 + nodes(STAGES))
-        for block in self._blocks(4096):
+        for block in self._blocks(STEPS):
             if block.h != before:
                 step = StretchedStep.of(self.system, block.h)
             before = block.h
@@ -54,10 +55,8 @@ class StretchedPassage(LawPassage):
                 state = step.carry(state, force)
                 done += 1
             self._look(block, forces, states, done == len(known))
-            try:
-                progress(done / len(known))
-            except KeyboardInterrupt as error:
-                return Passed(self.looked, block.end, done * STAGES, error)
+            self.reached, self.done = block.end, done
+            progress(done / len(known))
         return Passed(self.looked, float(self.system.time[-1]), done * STAGES)
 
     def _sees(self, look: OutputTimes, h: float, theta: float) -> tuple[Real, Real]:
