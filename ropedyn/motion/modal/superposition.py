@@ -11,7 +11,7 @@ import numpy as np
 from ...base.array import Real
 from ...scene.force import Force
 from ..moved import Moved
-from ..request import Run
+from ..request import TOLERANCE, Run
 from .convolution import motion_under
 from .expansion import Expansion, Share, expand
 from .truncation import departure, left_out, ratio_beyond
@@ -20,6 +20,8 @@ RESIDUES = 4e-12  # Residues are known to so much of the largest value.
 DRIFT = (
     1e-10  # If phases drift by no more than this part of it, it is not asked how far modes move.
 )
+PHASES = 2048 * np.finfo(float).eps  # Phases are known to this for each rad of the fastest mode,
+SMALL = 0.1  # or better where that is more than this part of the tolerance.
 EPS = 4 * np.finfo(float).eps  # Times are rounded by this, and so is each step.
 SHARES, TIMES, AROUND = (0.5, 0.7, 0.85), 3.0, 4
 """So much fewer modes tell the error, this many times over, within so many steps."""
@@ -88,27 +90,45 @@ def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
 
 def _rounding(run: Run, shares: tuple[Share, ...], value: Real) -> Real:
     """Estimate what rounding does to value: the phases of modes drift with time, shape as value."""
-    time, most = run.time, np.abs(value).max(axis=1, initial=0.0)
-    span, late = float(time[-1] - time[0]), float(np.abs(time[[0, -1]]).max())
-    size, shaken, drift, whole = np.zeros((4, len(most)))
-    for share in shares:
+    # as of the fastest, which assembled matrices do not tell better, unless that is too much
+    most, since = np.abs(value).max(axis=1, initial=0.0), run.time - run.time[0]
+    each = [
+        (share, k, _sizes(run, share.expansion, k, run.pushes[d]))
+        for share in shares
+        for k, d in enumerate(share.drive)
+    ]
+    size = np.zeros(len(most))
+    for share, _, one in each:
+        size[share.response] += one.sum(axis=1)
+    # where modes cancel, as until a wave arrives, they round by what each of them is
+    still = RESIDUES * np.maximum(most, size)
+    fastest = max(
+        (np.abs(share.expansion.square).max(initial=0.0) for share in shares), default=0.0
+    )
+    rough = PHASES * math.sqrt(fastest) * most
+    tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    if (rough * since[-1] <= SMALL * tolerance * most).all():
+        return np.asarray(still[:, None] + np.multiply.outer(rough, since))
+    return np.asarray(still[:, None] + _drifted(run, each, most, since))
+
+
+def _drifted(run: Run, each: list[tuple[Share, int, Real]], most: Real, since: Real) -> Real:
+    """Estimate how far the phases of modes drift, each by its own eigenvalue's error."""
+    span, late = float(since[-1]), float(np.abs(run.time[[0, -1]]).max())
+    shaken, drift, whole = np.zeros((3, len(most)))
+    for share, k, size in each:
         modes, r = share.expansion, share.response
         omega = np.sqrt(np.abs(modes.square))
         slip = omega * modes.wrong / 2
         memory = 1 / np.maximum(modes.sigma, 1 / span)
-        for k, d in enumerate(share.drive):
-            each = _sizes(run, modes, k, run.pushes[d])
-            # a mode moves no more than all do, but for those that cancel
-            seen = np.maximum(most[r, None], each)
-            moving = np.minimum(_departing(run, modes, k, run.pushes[d]), seen)
-            size[r] += each.sum(axis=1)
-            shaken[r] += EPS * moving @ (late * omega + len(time))
-            drift[r] += moving @ slip
-            whole[r] += moving @ (slip * memory)
-    # where modes cancel, as until a wave arrives, they round by what each of them is
-    still = RESIDUES * np.maximum(most, size) + shaken
-    slipped = np.minimum(np.multiply.outer(drift, time - time[0]), whole[:, None])
-    return np.asarray(still[:, None] + slipped)
+        # a mode moves no more than all do, but for those that cancel
+        seen = np.maximum(most[r, None], size)
+        moving = np.minimum(_departing(run, modes, k, run.pushes[share.drive[k]]), seen)
+        shaken[r] += EPS * moving @ (late * omega + len(since))
+        drift[r] += moving @ slip
+        whole[r] += moving @ (slip * memory)
+    slipped = np.minimum(np.multiply.outer(drift, since), whole[:, None])
+    return np.asarray(shaken[:, None] + slipped)
 
 
 def _sizes(run: Run, modes: Expansion, drive: int, push: Force | float) -> Real:
