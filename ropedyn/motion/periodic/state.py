@@ -134,11 +134,10 @@ def _finer(
         back = off / one.place.up if one.kind == "step" and off else 0.0
         across, moved = push - before.push, abs(off) / (2 * np.pi)
         change = across - slope * float(np.clip(back, -most, most))
-        change *= TIMES if one.kind == "step" else 1.0
-        # forces with corners fall by chance
-        change = np.where(
-            np.abs(before.change) > FALLS * np.abs(change), before.change / FALLS, change
-        )
+        if one.kind == "step":  # forces with corners fall by chance
+            change *= TIMES
+            chance = np.abs(before.change) > FALLS * np.abs(change)
+            change = np.where(chance, before.change / FALLS, change)
         own = one._replace(push=push, change=change, across=across, moved=moved)
         found.append(own._replace(turns=bool(abs(back) > most)))
     return found
