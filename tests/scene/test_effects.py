@@ -170,8 +170,9 @@ def counted(tmp_path_factory):
 @with_gcov
 def test_code_of_an_effect_runs_only_where_a_scene_has_it(counted):
     scenes = {"BARE": "BARE"} | {e: f"with_only({e!r})" for e in ALONE}
-    # what stands at nodes goes another way where coordinates are coupled
+    # what stands at nodes goes another way where coordinates are coupled or held
     scenes |= {f"coupled {e}": f"with_only({e!r}, *COUPLES)" for e in ALONE}
+    scenes |= {f"held {e}": f"with_only({e!r}, 'support')" for e in ALONE}
     scenes |= {f"no {name}": f"full().without{e!r}" for name, e in MECHANISMS.items()}
     lines = {name: set(of) for name, of in zip(scenes, counted(scenes.values()))}
     for name, served in MECHANISMS.items():
@@ -180,6 +181,8 @@ def test_code_of_an_effect_runs_only_where_a_scene_has_it(counted):
         others = {e for e in ALONE if e not in served and not set(served) & set(NEEDED.get(e, ()))}
         own = set().union(*(lines[e] for e in served)) - lines["BARE"]
         own -= set().union(*(lines[e] for e in others | needed))
+        if "support" not in served:
+            own -= set().union(*(lines[f"held {e}"] for e in others))
         if not {*served} & {"twist", *COUPLES}:
             own -= set().union(*(lines[f"coupled {e}"] for e in others))
         assert own, name
