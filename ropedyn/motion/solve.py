@@ -17,17 +17,11 @@ from .volterra import integrate
 
 def _by_events(run: Run) -> History:
     """Return the motion from event to event, or by another method that is sure of all of it."""
-    whole = run.but(partial=False)
     try:
-        return solve_events(whole)
-    except KeyboardInterrupt as stop:
-        history = getattr(stop, "history", None)
-        if run.partial and history is not None and len(history.time):
-            return cast("History", history)
-        raise
+        return solve_events(run, whole=True)
     except SolveError as refusal:
         with suppress(SolveError):
-            return integrate(whole)
+            return integrate(run.but(partial=False))
         if run.partial and refusal.history is not None:
             return cast("History", refusal.history)
         raise

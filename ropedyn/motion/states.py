@@ -125,26 +125,30 @@ def without_dashpots(
         total[one.point] = total.get(one.point, 0.0) + one.damping
         if terms.setdefault(term, node) == node:
             damping[term, at, at] -= one.damping
-    kept, total = _beside_drag(model, component, damping, total)
+    kept, total = _beside_drag(model, component, given, damping, total)
     free = chain._replace(damping=kept if kept.any() else None)
     alone = tuple(Resistance(*one) for one in total.items() if one[1])
     return dataclasses.replace(model, chain=free), alone
 
 
 def _beside_drag(
-    model: Compiled, component: tuple[str, ...], damping: Real, alone: dict[Point, float]
+    model: Compiled,
+    component: tuple[str, ...],
+    given: Real,
+    damping: Real,
+    alone: dict[Point, float],
 ) -> tuple[Real, dict[Point, float]]:
-    """Leave of damping what is as the mass everywhere, if few nodes have other, beside `alone`."""
+    """Leave what is as the mass everywhere of damping beside `alone`, if few nodes have other."""
     chain = model.chain
     own = np.array([model.coordinates.index(c) for c in component])
     square = np.ix_(np.arange(len(damping)), own, own)
     free = chain.held[:, own] == 0
     free &= np.isin(np.arange(len(free)), chain.term)[:, None]
-    mass, resists = (np.einsum("tii->ti", one[square]) for one in (chain.mass, damping))
+    mass, resists = (one[:, own, own] for one in (chain.mass, damping))
     usual = _usual(chain, own, mass, resists, free)
     apart = resists - usual * mass
-    most = np.abs(resists) if chain.damping is None else np.abs(chain.damping[:, own, own])
-    other = free & (np.abs(apart) > 8 * np.finfo(float).eps * np.maximum(most, np.abs(resists)))
+    most = np.maximum(np.abs(given[:, own, own]), np.abs(resists))
+    other = free & (np.abs(apart) > 8 * np.finfo(float).eps * most)
     left = damping.copy()
     left[:, own, own] = np.where(free, usual * mass, resists)
     total = dict(alone)

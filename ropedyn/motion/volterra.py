@@ -217,24 +217,26 @@ def _ended(run: Run, ended: Ended) -> History:
 
 def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException | None]:
     """Halve the steps until two runs agree within the tolerance, or until Ctrl-C."""
-    count, before = _first(run), None
+    count, coarse = _first(run), None
     most_steps = max(MOST_STEPS, RUNS * count)
     apart: Real | float = np.inf
     laws = CoreActing.of(run.model)
-    coarse: tuple[Stepped, Moved] | None = None
     while True:
+        more = _finer(run, laws, count)
         stepped = Stepped(run, laws, count, tolerance)
         try:
             found = stepped.moved()
         except (KeyboardInterrupt, Ended) as ended:
             error = ended.error if isinstance(ended, Ended) else ended
             if isinstance(error, KeyboardInterrupt) and coarse is not None and run.partial:
-                return *coarse, error
-            if not isinstance(error, Unsettled) or _finer(run, laws, count) > most_steps:
+                stepped, found = coarse
+                return stepped, found._replace(error=np.full(found.value.shape, np.inf)), error
+            if not isinstance(error, Unsettled) or more > most_steps:
                 raise
-            count, before, apart, coarse = _finer(run, laws, count), None, np.inf, None
+            count, apart, coarse = more, np.inf, None
             continue
-        if before is not None:
+        if coarse is not None:
+            before = coarse[1]
             now = np.maximum.accumulate(np.abs(found.value - before.value), axis=1)
             # where velocities turn, two runs may agree by chance
             both = np.maximum(now, apart / FALLS)
@@ -243,16 +245,12 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
             if (known.error <= most).all():
                 return stepped, known, None
             # shorter steps do not help where linear motion is not known
-            if (
-                _finer(run, laws, count) > most_steps
-                or (np.minimum(found.error, before.error) > most).any()
-            ):
+            if more > most_steps or (np.minimum(found.error, before.error) > most).any():
                 seen = np.where(np.isfinite(both), both, now)
                 known = found._replace(error=found.error + TIMES * seen)
                 raise _unknown(run, tolerance, count, known)
             apart = np.maximum(now, np.where(np.isfinite(apart), apart / FORGETS, 0.0))
-        coarse = stepped, found._replace(error=np.full(found.value.shape, np.inf))
-        count, before = _finer(run, laws, count), found
+        count, coarse = more, (stepped, found)
 
 
 def _finer(run: Run, laws: CoreActing, count: int) -> int:

@@ -96,7 +96,7 @@ class CoupledPassage(LawPassage):
                 error = self._failed(when, *found.error)
                 settles = found.error[1] is not None
                 return Passed(self.looked, when, done, error, settles)
-            self.reached, self.done = block.end, done
+            self.reached, self.stages = block.end, done
             progress(done / (len(known) - 1))
         return Passed(self.looked, float(system.time[-1]), done)
 

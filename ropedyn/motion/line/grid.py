@@ -21,7 +21,8 @@ ROUNDED = 4 * np.finfo(float).eps  # this part of the latest.
 FINEST = 64  # Lines reach so many times as far as the times resolve at first, at most.
 LEAST = 256  # Other times are looked at by so many even steps at least.
 MOST = 1 << 22  # So many numbers are computed at a time.
-SLOWER, LOOKS = 64, 9  # Later motion is seen where it fades so much slower, at so many rates.
+FEW = 9  # So many rates tell roughly what all do.
+SLOWER = 64  # Later motion is seen where it fades so much slower.
 
 
 def is_even(time: Real, tolerance: float = math.inf) -> bool:
@@ -120,11 +121,15 @@ class Grid:
         return np.asarray(self.a + 2j * math.pi / self.period * np.arange(self.lines + 1))
 
     @computed
-    def slow(self) -> tuple[Grid, Index]:
-        """Rates at which later motion has hardly faded: of another grid, and which of its."""
+    def few(self) -> Index:
+        """Which rates tell roughly what all do, from the slowest to the fastest."""
+        return np.unique(np.geomspace(1, self.lines, FEW).astype(np.intp))
+
+    @computed
+    def slow(self) -> Grid:
+        """Rates at which later motion has hardly faded."""
         a = self.a + math.log(self.decay) / self.period * (1 - 1 / SLOWER)
-        slower = replace(self, a=a, finer=1)
-        return slower, np.unique(np.geomspace(1, slower.lines, LOOKS).astype(np.intp))
+        return replace(self, a=a, finer=1)
 
     def exponentials(self, since: Real, weight: Real, rates: range) -> Complex:
         """Return the sum of weight e^(-s t) at some rates, of times (n,) since the first."""

@@ -116,8 +116,8 @@ class Line:
         end = max(FAR / grid.finer, LEAST_FAR)
         beyond = Beyond(run, transfer, FADED * grid.omega, end * grid.omega)
         parts = (slice(0, len(grid.s)),)
-        slower, at = grid.slow
-        value, slow = np.split(transfer.at(np.append(grid.s, slower.s[at])), [len(grid.s)], axis=2)
+        both = np.append(grid.s, grid.slow.s[grid.slow.few])
+        value, slow = np.split(transfer.at(both), [len(grid.s)], axis=2)
         return cls(run, transfer, forces, grid, beyond, value, slow, parts)
 
     def further(self, times: int) -> Line:
@@ -333,9 +333,9 @@ class Line:
 
     def _seen_slowly(self) -> Real:
         """Estimate how large motion ever becomes, (responses,): |s y(s)| of a sine or a step."""
-        slower, at = self.grid.slow
-        force = np.stack([transform(one, slower)[at] for one in self.forces])
-        force *= slower.s[at] ** (self.run.order + 1)
+        slower = self.grid.slow
+        force = np.stack([transform(one, slower)[slower.few] for one in self.forces])
+        force *= slower.s[slower.few] ** (self.run.order + 1)
         return np.abs(np.einsum("drk,dk->rk", self.slow, force)).max(axis=1)
 
 

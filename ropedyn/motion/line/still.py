@@ -16,7 +16,6 @@ from .grid import Grid
 
 STILL = 1e-9
 """It does not where it is this part of what drive and response could move at most."""
-RATES = 9  # It is looked at by so many rates, from the slowest to the fastest that times resolve.
 
 
 def is_still(run: Run, response: int) -> bool:
@@ -26,8 +25,7 @@ def is_still(run: Run, response: int) -> bool:
         return False
     transfer = run.look(tuple(run.places), (own,))
     grid = Grid.over(run.time, TOLERANCE, growth=transfer.growth, ahead=math.inf)
-    at = np.unique(np.geomspace(1, grid.lines, RATES).astype(np.intp))
-    s, force = grid.s[at], np.stack([transform(one, grid)[at] for one in run.as_forces])
+    s, force = grid.s[grid.few], np.stack([transform(one, grid)[grid.few] for one in run.as_forces])
     moves = (transfer.at(s)[:, 0] * force).sum(axis=0)
     if is_force(own):  # no force drives it alone: as a moment where the rope is pinned
         most = transfer.rounding(s)[:, 0] * np.abs(force)

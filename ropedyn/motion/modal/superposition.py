@@ -17,9 +17,6 @@ from .expansion import Expansion, Share, expand
 from .truncation import departure, left_out, ratio_beyond
 
 RESIDUES = 4e-12  # Residues are known to so much of the largest value.
-DRIFT = (
-    1e-10  # If phases drift by no more than this part of it, it is not asked how far modes move.
-)
 PHASES = 2048 * np.finfo(float).eps  # Phases are known to this for each rad of the fastest mode,
 SMALL = 0.1  # or better where that is more than this part of the tolerance.
 EPS = 4 * np.finfo(float).eps  # Times are rounded by this, and so is each step.

@@ -122,7 +122,7 @@ def _finer(
                 return None
             places[k] = reached[0]
     finer = [one._replace(balance=balance, place=place) for one, place in zip(states, places)]
-    pushes, slopes = _along(balance, finer)
+    pushes, slopes = _per_amplitude(balance, _forces(finer)), _slopes(balance, finer)
     found = []
     for one, before, push, slope in zip(finer, states, pushes, slopes):
         start = narrow.wider(before.place.x, balance.harmonics)
@@ -149,17 +149,18 @@ def _wider(narrow: HarmonicBalance, place: Place, harmonics: int) -> Place:
     return place._replace(x=x, along=along)
 
 
-def _along(balance: HarmonicBalance, states: list[SteadyState]) -> tuple[Complex, Complex]:
-    """Return the forces at the frequency of the drive, and how they change along a branch."""
-    ahead = [
-        one._replace(
-            place=place._replace(x=place.x + AHEAD * place.along, p=place.p + AHEAD * place.up)
-        )
-        for one in states
-        for place in [one.place]
-    ]
-    here, there = (_per_amplitude(balance, _forces(some)) for some in (states, ahead))
-    return here, (there - here) / AHEAD
+def _slopes(balance: HarmonicBalance, states: list[SteadyState]) -> Complex:
+    """Return how the forces of steps change along the branch, as they are per amplitude."""
+    slopes = np.zeros((len(states), balance.points), dtype=np.complex128)
+    steps = [k for k, one in enumerate(states) if one.kind == "step"]
+    if not steps:
+        return slopes
+    x, p, along, up = (np.array(one) for one in zip(*(states[k].place for k in steps)))
+    here, there = (
+        _per_amplitude(balance, balance.forces(x + d * along, p + d * up)) for d in (0.0, AHEAD)
+    )
+    slopes[steps] = (there - here) / AHEAD
+    return slopes
 
 
 def _exact(branch: Branch, states: list[SteadyState], near: list[Place]) -> list[Place] | None:

@@ -82,8 +82,8 @@ def _record(
 # --- how far it is right ------------------------------------------------------------------------
 
 
-def solve_events(run: Run) -> History:
-    """Follow the motion from event to event; see `Model.transient`."""
+def solve_events(run: Run, *, whole: bool = False) -> History:
+    """Follow the motion from event to event, `whole` or not at all; see `Model.transient`."""
     why = why_not_events(run)
     if why:
         raise SceneError(f'{why} where the method is "events"')
@@ -115,12 +115,9 @@ def solve_events(run: Run) -> History:
         sure_until=sure,
         stopped=ended_by(stopped),
     )
-    if stopped is not None:
-        if run.partial and len(run.time):
-            return history
-        stopped.history = history  # type: ignore[attr-defined]
+    if stopped is not None and not (run.partial and len(run.time)):
         raise stopped
-    if math.isinf(sure) or run.partial:
+    if stopped is not None or math.isinf(sure) or (run.partial and not whole):
         return history
     least = run.tolerance or TOLERANCE
     refusal = SolveError(

@@ -80,14 +80,14 @@ class LawPassage:
         self.all_steps = steps_between(system.time, system.breaks, h)
         self.looked = [np.zeros((o.stop - o.start, len(t))) for o, t, _ in system.looks]
         self._rows: dict[tuple[float, float, int], tuple[Real, Real]] = {}
-        self.reached, self.done = float(system.time[0]), 0  # until when [s], in so many steps
+        self.reached, self.stages = float(system.time[0]), 0  # until when [s], in so many
 
     def passed(self, progress: Callable[[float], object]) -> Passed:
         """Take all steps, or whole blocks of them until Ctrl-C."""
         try:
             return self.through(progress)
         except KeyboardInterrupt as error:
-            return Passed(self.looked, self.reached, self.done * STAGES, error)
+            return Passed(self.looked, self.reached, self.stages, error)
 
     def through(self, progress: Callable[[float], object]) -> Passed:
         """Take all steps."""
@@ -116,7 +116,7 @@ class LawPassage:
                 settles = failure is not None
                 return Passed(self.looked, reached, done * STAGES, error, settles)
             force, state = forces[-1], motions[-1]
-            self.reached, self.done = reached, done
+            self.reached, self.stages = reached, done * STAGES
             progress(done / len(known))
         bent /= np.maximum(size[2], np.finfo(float).tiny)
         return Passed(self.looked, float(system.time[-1]), done * STAGES, bent=bent)

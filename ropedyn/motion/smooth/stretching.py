@@ -55,7 +55,7 @@ class StretchedPassage(LawPassage):
                 state = step.carry(state, force)
                 done += 1
             self._look(block, forces, states, done == len(known))
-            self.reached, self.done = block.end, done
+            self.reached, self.stages = block.end, done * STAGES
             progress(done / len(known))
         return Passed(self.looked, float(self.system.time[-1]), done * STAGES)
 
