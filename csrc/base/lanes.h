@@ -92,8 +92,10 @@ RD_INLINE lanes l_select(lane_mask m, lanes a, lanes b)
     return (lanes)(((lane_mask)a & m) | ((lane_mask)b & ~m));
 }
 
-/* a > b and a >= b by halves: vectors longer than a register gcc 12 compares number by number */
+/* as many as most machines have registers for */
 typedef double half_lanes __attribute__((vector_size(4 * RD_LANES)));
+
+/* a > b and a >= b by halves: vectors longer than a register gcc 12 compares number by number */
 
 RD_INLINE lane_mask l_above(lanes a, lanes b)
 {

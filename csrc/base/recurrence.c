@@ -6,9 +6,9 @@
 
 enum { PART = 256 }; /* samples whose sums over modes are kept at a time */
 
-RD_INLINE quad load(const double *from)
+RD_INLINE half_lanes load(const double *from)
 {
-    quad x;
+    half_lanes x;
     memcpy(&x, from, sizeof x);
     return x;
 }
@@ -26,11 +26,11 @@ RD_INLINE void fill_pushes(size_t size, size_t blocks, const double *sample, dou
 
 /* what one group does in all responses over blocks, added to the sums */
 RD_INLINE void follow(const struct rd_recurrence *r, size_t group, size_t blocks,
-                      const int32_t *kind, const double *push, double *state, quad *sum)
+                      const int32_t *kind, const double *push, double *state, half_lanes *sum)
 {
     const size_t size = r->size, pushes = size + 1;
     const double *read = r->read + group * size * r->responses * 2 * RD_QUAD;
-    quad q = load(state), v = load(state + RD_QUAD);
+    half_lanes q = load(state), v = load(state + RD_QUAD);
     for (size_t b = 0; b < blocks; b++, sum += size) {
         const double *see = read;
         for (size_t m = 0; m < size; m++)
@@ -39,14 +39,14 @@ RD_INLINE void follow(const struct rd_recurrence *r, size_t group, size_t blocks
         const size_t own = group * r->kinds + (size_t)kind[b];
         const double *c = r->change + own * RD_CHANGE * RD_QUAD;
         const double *gain = r->gain + own * pushes * 2 * RD_QUAD;
-        quad push_q = {0}, push_v = {0};
+        half_lanes push_q = {0}, push_v = {0};
         for (size_t i = 0; i < pushes; i++, gain += 2 * RD_QUAD) {
             const double by = *push++;
             push_q += load(gain) * by;
             push_v += load(gain + RD_QUAD) * by;
         }
-        const quad dq = (load(c) * q + load(c + RD_QUAD) * v) + push_q;
-        const quad dv = (load(c + 2 * RD_QUAD) * q + load(c + 3 * RD_QUAD) * v) + push_v;
+        const half_lanes dq = (load(c) * q + load(c + RD_QUAD) * v) + push_q;
+        const half_lanes dv = (load(c + 2 * RD_QUAD) * q + load(c + 3 * RD_QUAD) * v) + push_v;
         q += dq;
         v += dv;
     }
@@ -56,7 +56,7 @@ RD_INLINE void follow(const struct rd_recurrence *r, size_t group, size_t blocks
 
 /* the sums over modes, and what pushes within a block */
 RD_INLINE void tell(const struct rd_recurrence *r, size_t blocks, const double *push,
-                    const quad *sum, double *value, size_t stride)
+                    const half_lanes *sum, double *value, size_t stride)
 {
     const size_t size = r->size;
     for (size_t p = 0; p < r->responses; p++)
@@ -73,7 +73,7 @@ RD_INLINE void tell(const struct rd_recurrence *r, size_t blocks, const double *
 }
 
 RD_CLONES static void walk(const struct rd_recurrence *r, size_t blocks, const int32_t *kind,
-                           const double *sample, double *state, quad *work, double *value)
+                           const double *sample, double *state, half_lanes *work, double *value)
 {
     const size_t most = PART / r->size, stride = blocks * r->size;
     double push[2 * PART];
@@ -94,7 +94,7 @@ size_t rd_recurrence_work(size_t responses)
 
 /* copies of a function per instruction set must be static, or the extension exports them */
 void rd_recurrence_walk(const struct rd_recurrence *recurrence, size_t blocks, const int32_t *kind,
-                        const double *sample, double *state, quad *work, double *value)
+                        const double *sample, double *state, half_lanes *work, double *value)
 {
     walk(recurrence, blocks, kind, sample, state, work, value);
 }

@@ -5,11 +5,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/fast.h"
+#include "base/lanes.h"
 
-/* of modes: twice as wide, they would not stay in the registers of most machines */
-enum { RD_QUAD = 4 };
-typedef double quad __attribute__((vector_size(8 * RD_QUAD)));
+/* modes side by side, half_lanes: of twice as many not all would stay in registers */
+enum { RD_QUAD = RD_LANES / 2 };
 
 /* A mode's q and its velocity v change over a block by
 
@@ -29,12 +28,12 @@ struct rd_recurrence {
     const double *local;  /* (size, responses, size) and of each push but the last           */
 };
 
-/* quads that a walk works with */
+/* half_lanes that a walk works with */
 size_t rd_recurrence_work(size_t responses);
 
 /* kind (blocks) of each block; sample (blocks size + 1); state (groups, 2, RD_QUAD) q and v, before
    and after; value (responses, blocks size) at each sample but the last. */
 void rd_recurrence_walk(const struct rd_recurrence *recurrence, size_t blocks, const int32_t *kind,
-                        const double *sample, double *state, quad *work, double *value);
+                        const double *sample, double *state, half_lanes *work, double *value);
 
 #endif

@@ -67,9 +67,10 @@ static void release(struct arrays *of)
     Py_XDECREF(of->change);
 }
 
-static quad *take_work(struct rd_workspace *workspace, size_t responses)
+static half_lanes *take_work(struct rd_workspace *workspace, size_t responses)
 {
-    return rd_take_aligned(workspace, rd_recurrence_work(responses), sizeof(quad), sizeof(quad));
+    return rd_take_aligned(workspace, rd_recurrence_work(responses), sizeof(half_lanes),
+                           sizeof(half_lanes));
 }
 
 PyObject *py_recurrence(PyObject *module, PyObject *arguments)
@@ -100,7 +101,7 @@ PyObject *py_recurrence(PyObject *module, PyObject *arguments)
     take_work(&workspace, recurrence.responses);
     if (value == NULL || py_workspace_allocate(&workspace) < 0)
         goto done;
-    quad *work = take_work(&workspace, recurrence.responses);
+    half_lanes *work = take_work(&workspace, recurrence.responses);
     double *at = PyArray_DATA((PyArrayObject *)state);
     memcpy(at, PyArray_DATA(of.before), (size_t)PyArray_NBYTES(of.before));
     Py_BEGIN_ALLOW_THREADS

@@ -53,7 +53,7 @@ static void fill_tables(struct tables *t)
 static void walk(const struct tables *t, size_t first, size_t blocks, double *state, double *value)
 {
     const struct rd_recurrence recurrence = view(t);
-    quad *work = aligned_alloc(sizeof *work, rd_recurrence_work(SEEN) * sizeof *work);
+    half_lanes *work = aligned_alloc(sizeof *work, rd_recurrence_work(SEEN) * sizeof *work);
     CHECK(work != NULL);
     rd_recurrence_walk(&recurrence, blocks, t->kind + first, t->sample + first * SIZE, state, work,
                        value);
@@ -81,7 +81,7 @@ static void line_moves_a_free_mass_as_a_cubic(void)
     const struct rd_recurrence recurrence = {
         1, 1, 1, 2, &change[0][0], &gain[0][0][0], &read[0][0][0][0], &local[0][0][0],
     };
-    quad *work = aligned_alloc(sizeof *work, rd_recurrence_work(2) * sizeof *work);
+    half_lanes *work = aligned_alloc(sizeof *work, rd_recurrence_work(2) * sizeof *work);
     CHECK(work != NULL);
     rd_recurrence_walk(&recurrence, STEPS, kind, sample, state, work, &value[0][0]);
     free(work);
