@@ -451,6 +451,27 @@ def test_ctrl_c_leaves_what_phases_had_told():
         model.transient(time, progress=interrupt, **asked)
 
 
+@pytest.mark.parametrize("partial", [False, True])
+def test_ctrl_c_ends_phases_of_all_components_at_once(partial):
+    """Those after the first were followed all the same."""
+    rope = rd.Rope(1.0, 0.1, torsional_stiffness=2.0, polar_inertia=1e-5)
+    parts = [
+        rd.Dashpot(0.5, 0.5, exponent=0.0),
+        rd.Dashpot(0.5, 0.01, exponent=0.0, coordinate="alpha"),
+    ]
+    model = rd.Scene(rope, tension=100.0, parts=parts).compile(elements=8)
+    drive, calls = [("z", 0.25), ("alpha", 0.25)], []
+
+    def stop(_):
+        calls.append(1)
+        signal.raise_signal(signal.SIGINT)
+
+    asked = {"drive": drive, "force": [rd.Sine(20.0, 30.0), rd.Sine(1.0, 30.0)], "response": drive}
+    with pytest.raises(KeyboardInterrupt):
+        model.transient(np.linspace(0.0, 1.0, 501), **asked, progress=stop, partial=partial)
+    assert len(calls) == 1
+
+
 def test_ctrl_c_between_blocks_of_steps_leaves_those_before(monkeypatch):
     """It came from the core or the recording of a block, and nothing was left."""
     model = STRING.replace(parts=[LAW]).compile(elements=2)

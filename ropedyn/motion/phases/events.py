@@ -46,7 +46,8 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
     sizes = [np.zeros(len(one.points)) for one in looks]
     events: list[float] = []
     whole, until = True, math.inf
-    for one in moving_components(run, looks, modes):
+    components = moving_components(run, looks, modes)
+    for one in components:
         walk, reached = PhaseWalk(one.system), float(run.time[0])
         forces = [run.forces[k] for k in one.drives]
         try:
@@ -59,7 +60,9 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
                 reached = visit.stop
                 run.progress(min(1.0, (visit.stop - run.time[0]) / one.system.span))
         except KeyboardInterrupt:
-            until = min(until, reached)
+            # of components that were not followed nothing is known
+            until = reached if one is components[-1] else float(run.time[0])
+            break
         events += [at for at, _ in walk.events]
         whole = whole and not np.isfinite(one.system.states.beyond)
     return Followed(seen, sizes, sorted(events), whole, modes, until)
@@ -100,6 +103,8 @@ def solve_events(run: Run, *, whole: bool = False) -> History:
     kept = found.seen[1] if len(looks) > 1 else np.zeros((len(points), 0))
     stopped = KeyboardInterrupt() if math.isfinite(found.until) else None
     known, shown = run.time < found.until, run.snapshots < found.until
+    if stopped is not None and not (run.partial and known.any()):
+        raise stopped
     run = run.but(time=run.time[known], snapshots=run.snapshots[shown])
     asked = asked.but(time=run.time, snapshots=run.snapshots)
     value, error, kept = found.seen[0][:, known], error[:, known], kept[:, shown[: kept.shape[1]]]
@@ -115,8 +120,6 @@ def solve_events(run: Run, *, whole: bool = False) -> History:
         sure_until=sure,
         stopped=ended_by(stopped),
     )
-    if stopped is not None and not (run.partial and len(run.time)):
-        raise stopped
     if stopped is not None or math.isinf(sure) or (run.partial and not whole):
         return history
     least = run.tolerance or TOLERANCE
