@@ -377,6 +377,21 @@ def test_the_last_time_is_answered_wherever_the_last_event_is(last):
     assert history.cost.method == "events"
 
 
+@pytest.mark.parametrize("time", [[0.0, 0.15, 0.3], [0.0, 0.3]])
+def test_the_last_time_is_answered_where_rounding_loses_its_ulp(time):
+    begins, last = 0.0325, 0.3
+    assert begins + (last - begins) < last
+    string = rd.Scene(rd.Rope(1.0, 0.25), tension=100.0)
+    asked = {"drive": ("z", 0.25), "force": rd.Step(2.0, time=begins), "response": ("z", 0.5)}
+    plain, beside = (
+        scene.compile(elements=4, element="rigid").transient(time, **asked)
+        for scene in (string, string.replace(parts=[rd.Stop(0.5, 1e4, gap=9.0)]))
+    )
+    assert beside.cost.method == "events"
+    assert plain.value[0, -1] != 0
+    assert beside.value == pytest.approx(plain.value, rel=1e-10)
+
+
 def test_answer_is_saved_with_the_time_it_is_sure_until(tmp_path):
     model = rope(rd.Stop(0.5, 1e4, gap=1e-3)).compile(elements=4)
     history = model.transient(np.linspace(0.0, 0.01, 11), **PUSH)
