@@ -143,8 +143,13 @@ static enum rd_status fill(struct rd_mixed *mixed, const double _Complex *factor
     const struct rd_chain *chain = mixed->chain;
     const size_t w = chain->width;
     double _Complex F[W * W], G[W * W], Q[W * W];
+    const size_t column = 2 * mixed->reach + 1;
     int32_t last = -1;
-    memset(mixed->band, 0, mixed->size * (2 * mixed->reach + 1) * sizeof *mixed->band);
+    for (size_t j = 0; j < mixed->size; j++) {
+        if (rd_lu_stops(&mixed->lu, j))
+            return RD_INTERRUPTED;
+        memset(mixed->band + j * column, 0, column * sizeof *mixed->band);
+    }
     for (size_t i = 0; i < chain->nodes; i++) {
         if (rd_lu_stops(&mixed->lu, i))
             return RD_INTERRUPTED;
@@ -225,6 +230,8 @@ void rd_mixed_spread(const struct rd_mixed *mixed, const double _Complex *x, dou
     for (size_t j = 0; j < n; j++) {
         const double own = cabs(x[j]);
         size_t first, last;
+        if (rd_lu_stops(&mixed->lu, j))
+            return;
         rows_of(mixed, j, &first, &last);
         for (size_t i = first; i <= last; i++) {
             const double _Complex entry = mixed->band[j * column + mixed->reach + i - j];

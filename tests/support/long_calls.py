@@ -140,7 +140,7 @@ CALLS = {
         lambda m: again(lambda: m.frf(LINES[:1], **PUSH)),
     ),
     "one response of many elements by the band": (
-        lambda: uneven(500_000, element="rigid"),
+        lambda: uneven(200_000, element="rigid"),
         lambda m: again(lambda: m.frf(LINES[:3], solver="band", **PUSH)),
     ),
     "derivatives of responses": (
