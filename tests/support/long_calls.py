@@ -227,7 +227,7 @@ CALLS = {
     "tracks": (lambda: SHORT, tracked),
     "prices of accuracy": (
         lambda: HELD,
-        lambda s: rd.accuracy_cost(s, rd.ask.modes(20), elements=[100, 1000, 20_000], repeat=99),
+        lambda s: rd.accuracy_cost(s, rd.ask.modes(20), elements=[100, 600, 20_000], repeat=99),
     ),
     "prices of effects": (
         lambda: HELD.replace(parts=BEADS[:20]),
