@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.answer import TRANSIENT, Answer, Cost, Frozen, axes
+from ..base.answer import Answer, Cost, Frozen, axes, kept_as
 from ..base.array import Complex, Real
 from ..base.computed import Lazy, Read, lazy
 from ..base.drawing import draw
@@ -20,7 +20,7 @@ from ..chain.port import Point
 from ..chain.tip import is_tip
 from ..curves.measured import Measured
 from ..response.moved_end import is_end
-from ..scene.force import Force
+from ..scene.force import Force, from_words, words
 from ..signal.ringdown import RingDown, ring_down
 from ..signal.spectrum import Spectrum, amplitude, spectrum
 from .response_estimate import estimated
@@ -35,6 +35,10 @@ def ended_by(error: BaseException | None) -> str:
         return ""
     told = f"{type(error).__name__}: {error}"
     return "interrupted" if isinstance(error, KeyboardInterrupt) else told
+
+
+KEPT_LAW = kept_as(lambda law: list(map(words, law)), tuple)
+"""How a file keeps the forces that drive: in words, which their values at the times complete."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +144,12 @@ class History(Answer):
     sure_until: float = math.inf
     stopped: str = ""
     released: bool = False
-    law: tuple[Force, ...] = field(default=(), repr=False, metadata=TRANSIENT)
+    law: tuple[Force, ...] = field(default=(), repr=False, metadata=KEPT_LAW)
+
+    def __post_init__(self) -> None:
+        law = (from_words(one, self.time, self.force[k]) for k, one in enumerate(self.law))
+        object.__setattr__(self, "law", tuple(law))
+        super().__post_init__()
 
     energy = Read[dict[str, Real]]("balance", "Energies over time [J], each shape (t,).")
 

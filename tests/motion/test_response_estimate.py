@@ -138,11 +138,35 @@ def test_what_is_not_known_is_named():
     assert sum("cut off" in note for note in short.notes) == 2
 
 
-def test_a_saved_history_has_no_law_and_says_so(tmp_path):
-    history = BEAM.transient(TIME[:500], force=BLOWS["1 ms"], **WHERE)
-    history.save(tmp_path / "blow.nc")
-    again = rd.load(tmp_path / "blow.nc")
-    assert again.frf().notes[0].startswith("force: its samples; what it does")
+@pytest.mark.parametrize(
+    "force",
+    [BLOWS["1 ms"], rd.Chirp(1.0, 5.0, 60.0, 0.2), np.sin(9 * TIME[:64]) ** 3],
+    ids=["blow", "chirp", "samples"],
+)
+@pytest.mark.parametrize("beside", [(), (rd.Impulse(0.1, time=0.01), rd.Step(2.0, time=0.3))])
+def test_a_file_keeps_what_drives(force, beside, tmp_path):
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0).compile(elements=2, element="rigid")
+    given = [force, *beside] if beside else force
+    if beside and isinstance(force, np.ndarray):
+        given = [*beside, force]
+    history = model.transient(TIME[:64], drive=("z", 0.5), force=given)
+    history.save(tmp_path / "motion.nc")
+    again = rd.load(tmp_path / "motion.nc")
+    found, before = again.frf(), history.frf()
+    assert found.notes == before.notes
+    # samples beside others are what the others leave of the sum, in which they may round
+    size = np.abs(before.value).max()
+    assert np.abs(found.value - before.value).max() <= 1e-14 * size
+    assert again.to_json() == history.to_json()
+
+
+def test_a_file_keeps_what_no_sample_shows(tmp_path):
+    """The force of a blow at an instant is 0 at every time."""
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0).compile(elements=2, element="rigid")
+    asked = {"drive": ("z", 0.5), "force": rd.Impulse(0.01, time=0.02), "quantity": "acceleration"}
+    model.transient(np.arange(64) / 1000.0, **asked).save(tmp_path / "motion.nc")
+    with pytest.raises(rd.SceneError, match="where a blow at an instant hits"):
+        rd.load(tmp_path / "motion.nc").frf()
 
 
 def test_acceleration_that_no_sample_shows_is_refused():
