@@ -5,6 +5,7 @@ import pytest
 from scipy.optimize import root
 
 import ropedyn as rd
+from ropedyn.motion.periodic.slipping import Decays
 
 DRIVE = rd.study2015.DRIVE
 RESPONSES = [("z", 0.50625), ("beta", 0.50625), ("alpha", 0.3375)]
@@ -181,6 +182,32 @@ def test_what_has_no_meaning_is_refused(change, message):
     given = {"frequency": [10.0], "drive": ("z", 0.5), "amplitude": 1.0} | change
     with pytest.raises(rd.SceneError, match=message):
         hard().stepped_sine(**given)
+
+
+@pytest.mark.parametrize(
+    ("friction", "stiffness", "gap", "f"),
+    [(0.04, 35_953.0, 4e-4, 25.2), (0.09, 413_553.0, 0.0, 27.8)],
+)
+def test_motion_that_never_repeats_with_the_drive_is_refused(friction, stiffness, gap, f):
+    """The first is chaotic, the second repeats after three periods, by steps of 1/1500 of one."""
+    parts = [
+        rd.Dashpot(0.5, friction, exponent=0.0),
+        rd.Stop(0.5, stiffness=stiffness, gap=gap),
+    ]
+    damping = rd.RayleighDamping(mass=6.0, stiffness=0.0)
+    scene = rd.Scene(rd.Rope(1.0, 0.2), tension=100.0, damping=damping, parts=parts)
+    model = scene.compile(elements=2, element="rigid")
+    with pytest.raises(rd.SolveError, match="no steady state of its period: after 512 periods"):
+        model.stepped_sine([f], drive=("z", 0.5), amplitude=1.0)
+
+
+@pytest.mark.parametrize(("decay", "ends"), [(0.0, 64), (1e-4, 64), (0.01, None)])
+def test_changes_that_stay_as_they_are_end_what_is_followed(decay, ends):
+    """From half of the looks to all of them they must fall below 0.9."""
+    looks = np.exp((3j - decay) * np.arange(500))[:, None]
+    decays = Decays(32)
+    ended = (n for n in range(1, len(looks) + 1) if not decays.go_on(looks[:n]))
+    assert next(ended, None) == ends
 
 
 def test_undamped_modes_that_are_not_driven_do_not_hinder_the_steady_state():

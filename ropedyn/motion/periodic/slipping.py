@@ -27,6 +27,10 @@ from .asked import SteppedSine
 WINDOW = 8  # The amplitude is looked at after so many periods at least.
 LOOKS = 4  # So many looks in a row must agree.
 LONGEST = 100_000  # A motion that changes after so many periods is said not to settle.
+DECAY = 4.0  # After so many time constants the changes are compared with those before,
+LEAST = 256  # and not before so many periods;
+UNDAMPED = 4096  # after so many where nothing but friction damps.
+AS_BEFORE = 0.9  # Changes that are not below so much of those before do not decay.
 TOLERANCE = 1e-3  # Of the steady state where none is given.
 SAMPLES = 1024  # Of a period, in exact phases: what slips has harmonics that fall as 1/k^3.
 MODES = 64  # Of continuous spans; half of them tell the error.
@@ -47,6 +51,7 @@ class Goes(Protocol):
     """A motion that goes on from look to look."""
 
     mine: list[int]  # Which of the responses it has
+    sigma: Real  # (k,) how its modes decay where nothing holds [1/s]
 
     def window(self, frequency: float, periods: range) -> MeanAmplitudes:
         """Follow some periods."""
@@ -81,7 +86,7 @@ class PhasesGoOn:
     """One component from event to event."""
 
     def __init__(self, one: Moving, push: Sine, points: Sequence[Point]) -> None:
-        self.one, self.push = one, push
+        self.one, self.push, self.sigma = one, push, one.system.states.sigma
         ((self.rows, self.mine),) = one.watched
         held, before = one.system.laws.frictions, len(one.system.laws.contacts)
         self.grip = {
@@ -154,6 +159,7 @@ class StepsGoOn:
 
     def __init__(self, system: CoupledSystem, mine: list[int], push: Sine) -> None:
         self.system, self.mine, self.push = system, mine, push
+        self.sigma = system.modes.sigma
         self.state = np.zeros((2, len(system.modes.sigma)))  # all of the motion
         self.count = FEWEST
 
@@ -229,6 +235,7 @@ def _settled(
 ) -> tuple[Complex, Real]:
     """Return the amplitudes when the motion stays, and how far they are off, (responses,)."""
     periods, share = math.ceil(WINDOW / turn) * turn, (asked.tolerance or TOLERANCE) / 2
+    decays = Decays(max(_longest(rows, frequency) // periods, 4))
     seen: list[Complex] = []
     motion: list[Complex] = []
     for k in range(max(LONGEST // periods, LOOKS + 1)):
@@ -240,6 +247,8 @@ def _settled(
             folded[one.mine] = now.folded
         seen.append(found)
         motion.append(np.concatenate([now.modes for now in each]))
+        if not decays.go_on(motion):
+            break
         if len(seen) <= LOOKS:
             continue
         changes, moves = _changes(seen), _changes(motion)
@@ -253,9 +262,38 @@ def _settled(
             return found, np.where(found == 0, 0.0, np.maximum(left, rounded) + folded)
     change = np.abs(motion[-1] - motion[-2]).max() / np.abs(motion[-1]).max()
     raise SolveError(
-        f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the motion "
-        f"changes by {float(change):.1e} of itself in {periods} periods"
+        f"frequency {frequency!r} Hz has no steady state of its period: after "
+        f"{len(motion) * periods} periods the motion changes by {float(change):.1e} of itself in "
+        f"{periods} periods"
     )
+
+
+def _longest(rows: Sequence[Goes], frequency: float) -> int:
+    """Return the periods after which what is left of the beginning must have become less."""
+    sigma = np.concatenate([one.sigma for one in rows])
+    sigma = sigma[sigma > 0]
+    least = max(LEAST, DECAY * frequency / sigma.min()) if len(sigma) else UNDAMPED
+    return int(min(least, LONGEST))
+
+
+class Decays:
+    """Whether motion changes less and less: at `next` looks, and whenever they have doubled."""
+
+    def __init__(self, first: int) -> None:
+        self.next, self.as_before = first, False
+        self.change: list[float] = []
+
+    def go_on(self, motion: Sequence[Complex]) -> bool:
+        """Whether the last two times that it was asked the changes had not stayed as before."""
+        if len(motion) > 1:
+            self.change.append(float(np.abs(motion[-1] - motion[-2]).max()))
+        if len(motion) < self.next:
+            return True
+        half = self.next // 2
+        late, early = max(self.change[half:]), max(self.change[half // 2 : half])
+        before, self.as_before = self.as_before, late > AS_BEFORE * early
+        self.next *= 2
+        return not (before and self.as_before)
 
 
 def _changes(seen: list[Complex]) -> Real:
