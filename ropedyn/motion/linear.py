@@ -80,7 +80,7 @@ def within_tolerance(run: Run) -> Moved:
 
 def nearest(run: Run, tolerance: float) -> Moved:
     """Return the motion within the tolerance, or the nearest to it that a method finds."""
-    methods = ["modal"] if _has_ratios(run) else ["line", *_methods(run)[:1]]
+    methods = ["modal"] if _has_ratios(run) else [*dict.fromkeys(("line", _methods(run)[0]))]
     found: list[Moved] = []
     for _, moved in _tried(run, methods, tolerance, None):
         if isinstance(moved, SolveError):
