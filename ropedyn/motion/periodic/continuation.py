@@ -38,6 +38,10 @@ class Place(NamedTuple):
     up: float  # tangent, of p
 
 
+class Stuck(SolveError):
+    """Raised where a branch cannot be followed on."""
+
+
 @dataclass(eq=False)
 class Branch:
     """A curve, followed."""
@@ -67,9 +71,7 @@ class Branch:
                     return place
             self.step /= 2
         where = self.called(before.p)
-        raise SolveError(
-            f"steady motion cannot be followed beyond {where}: no step is short enough"
-        )
+        raise Stuck(f"steady motion cannot be followed beyond {where}: no step is short enough")
 
     def reached(
         self, before: Place, step: float, bend: Real | float = 0.0, enough: float = ENOUGH

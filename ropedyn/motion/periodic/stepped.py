@@ -17,7 +17,7 @@ from ...response.frf import FRF
 from ...response.harmonic import solve_harmonic
 from .asked import SteppedSine
 from .balance import HarmonicBalance
-from .continuation import ENOUGH, ROUGHLY, Branch, Place
+from .continuation import ENOUGH, ROUGHLY, Branch, Linearise, Place, Stuck
 from .driven import Driven, known_to
 from .slipping import slipping
 from .stability import growing
@@ -144,38 +144,58 @@ def _state(driven: Driven, path: Path | None, harmonics: int, frequency: float) 
 
 
 def at_rest(driven: Driven, balance: HarmonicBalance, frequency: float) -> Real:
-    """Return the motion that is reached when the amplitude of the drive is raised from 0."""
+    """Return the motion that is reached when the amplitude of the drive is raised from 0.
+
+    Where that way does not begin or gets lost, as beside a stop that is met at every amplitude, the
+    forces of the laws are raised from 0 instead.
+    """
     omega = 2 * np.pi * frequency / balance.turn
 
-    def linearise(x: Real, share: Real | float) -> tuple[Real, Real, Real]:
-        about, by_share = balance.at(x, np.full(np.shape(share), omega), share)
+    def by_amplitude(x: Real, share: Real | float) -> tuple[Real, Real, Real]:
+        about, by_share, _ = balance.at(x, np.full(np.shape(share), omega), share)
         return about.gap, about.jacobian, by_share
 
+    def by_laws(x: Real, part: Real | float) -> tuple[Real, Real, Real]:
+        about, _, by_part = balance.at(x, np.full(np.shape(part), omega), 1.0, part)
+        return about.gap, about.jacobian, by_part
+
     linear = driven.linear_motion(balance, omega)
-    size = float(np.linalg.norm(linear))
-    nowhere = Place(np.zeros(0), FIRST, np.zeros(0), 0.0)
-    called = f"{{:.3g}} of the amplitude at {frequency!r} Hz".format
-    branch = Branch(linearise, nowhere, 1.0, SMALL * size, called, step=0.25)
-    x = branch.settle(FIRST * linear, FIRST)
+    small = SMALL * float(np.linalg.norm(linear))
+
+    def raised(linearise: Linearise, begin: Real, what: str) -> Real | None:
+        called = f"{{:.3g}} of the {what} at {frequency!r} Hz".format
+        nowhere = Place(np.zeros(0), FIRST, np.zeros(0), 0.0)
+        branch = Branch(linearise, nowhere, 1.0, small, called, step=0.25)
+        return _raised(branch, begin, linear)
+
+    x = raised(by_amplitude, FIRST * linear, "amplitude")
     if x is None:
-        x = branch.settle(linear, 1.0)
-        if x is None:
-            raise _lost(frequency)
-        return x
+        x = raised(by_laws, linear, "laws' forces")
+    if x is None:
+        raise SolveError(
+            f"frequency {frequency!r} Hz: no steady state was found on the way from rest"
+        )
+    return x
+
+
+def _raised(branch: Branch, begin: Real, end: Real) -> Real | None:
+    """Return where a branch leads at p = 1 from about a motion at p = FIRST, if it does."""
+    x = branch.settle(begin, FIRST)
+    if x is None:
+        return branch.settle(end, 1.0)
     branch.place = Place(x, FIRST, x, 0.0)
     branch.turned(1.0)
     for _ in range(STEPS):
         before = branch.place
-        after = branch.advance()
+        try:
+            after = branch.advance()
+        except Stuck:
+            return None
         if after.p >= 1:
             found = branch.settle(branch.between(before, after, 1.0), 1.0)
             if found is not None:
                 return found
-    raise _lost(frequency)
-
-
-def _lost(frequency: float) -> SolveError:
-    return SolveError(f"frequency {frequency!r} Hz: no steady state was found on the way from rest")
+    return None
 
 
 @dataclass(eq=False)
