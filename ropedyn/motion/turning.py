@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -31,6 +32,7 @@ from ..scene.tension import Tension
 from .acting import scene_laws
 from .history import History
 from .linear import solve_linear
+from .moved import against_spans
 from .periodic.asked import SteppedSine
 from .request import Run
 
@@ -47,6 +49,7 @@ def turned(run: Run, solve: Callable[[Run], History]) -> History:
     if not scene.tension.pulsates:
         return solve(run)
     _refuse(run.model, [moving(point) for point in run.responses if point[0] not in OF_FORCE])
+    _refuse_numbered(run)
     history = solve(run)
     return _with_twist(run, history) if len(history.time) > 1 else history
 
@@ -110,26 +113,47 @@ def _refuse(model: Compiled, asked: list[str]) -> None:
             raise SceneError(f"{one.name} must be linear on alpha {WHY} that pulsates")
 
 
+def _twists(run: Run) -> bool:
+    """Whether twist is asked for that the tension drives."""
+    asked = len(run.snapshots) or any(moving(point) == "alpha" for point in run.responses)
+    return bool(asked and turning_ends(run.model.scene))
+
+
+def _refuse_numbered(run: Run) -> None:
+    """Refuse ratios by number: twist at a given tension has modes of its own."""
+    ratios = [damping.term().ratio for damping in run.model.scene.dampings]
+    if _twists(run) and any(isinstance(ratio, tuple) for ratio in ratios):
+        raise SceneError(
+            f"damping ratio must be one number {WHY} that pulsates, got one for each mode: twist "
+            "at a given tension has modes of its own, which Model.modes does not number"
+        )
+
+
 def _with_twist(run: Run, history: History) -> History:
     """Add twist, torque and tension to a motion."""
-    scene = run.model.scene
-    tension = scene.tension
-    assert isinstance(tension, Tension)
-    share = (scene.rope.lay_coupling or 0.0) / (scene.rope.axial_stiffness or math.inf)
-    value, snapshot = history.value.copy(), history.snapshot.copy()
+    tension = _pulsating(run)
+    value, snapshot, error = history.value.copy(), history.snapshot.copy(), history.error.copy()
     extra = _pulsation(tension, history.time, run.order)
     for k, point in enumerate(run.responses):
-        value[k] += {"F_x": 1.0, "M_alpha": share}.get(point[0], 0.0) * extra
-    error = history.error.copy()
-    ends = turning_ends(scene)
+        value[k] += {"F_x": 1.0, "M_alpha": _share(run)}.get(point[0], 0.0) * extra
+    if not _twists(run):
+        return changed(history, value=value, error=error, snapshot=snapshot)
     own = [k for k, point in enumerate(run.responses) if moving(point) == "alpha"]
-    if ends and (own or len(history.snapshot_time)):
-        twist = solve_linear(_twisting(run, history, tension, share, ends))
-        value[own] += twist.value
-        error[own] += twist.error
-        at = run.model.coordinates.index("alpha")
-        snapshot[:, :, at] += twist.snapshot[:, :, 0]
-    return changed(history, value=value, error=error, snapshot=snapshot)
+    until = replace(run.kept, time=history.time, snapshots=history.snapshot_time)
+    twist = _twist(until)
+    value[own] += twist.value
+    error[own] += twist.error
+    at = run.model.coordinates.index("alpha")
+    snapshot[:, :, at] += twist.snapshot[:, :, 0]
+    mesh_error = partial(_mesh_error, until, history, own, twist.value)
+    return changed(history, value=value, error=error, snapshot=snapshot, mesh_error=mesh_error)
+
+
+def _mesh_error(run: Run, history: History, own: list[int], twist: Real) -> Real:
+    """Return that of a motion and of the twist beside it."""
+    missed = history.mesh_error.copy()
+    missed[own] += against_spans(run, twist, _twist)
+    return missed
 
 
 def _pulsation(tension: Tension, time: Real, order: int) -> Real:
@@ -139,9 +163,21 @@ def _pulsation(tension: Tension, time: Real, order: int) -> Real:
     return np.asarray(tension.amplitude * omega**order * np.cos(angle))
 
 
-def _twisting(run: Run, history: History, tension: Tension, share: float, ends: list[int]) -> Run:
+def _pulsating(run: Run) -> Tension:
+    tension = run.model.scene.tension
+    assert isinstance(tension, Tension)
+    return tension
+
+
+def _share(run: Run) -> float:
+    """Return D/EA [m]."""
+    rope = run.model.scene.rope
+    return (rope.lay_coupling or 0.0) / (rope.axial_stiffness or math.inf)
+
+
+def _twist(run: Run) -> History:
     """Return the motion of twist alone, under the moments of the tension on ends that turn."""
-    chain = run.model.chain.only(("alpha",))
+    tension, chain = _pulsating(run), run.model.chain.only(("alpha",))
     alone = replace(
         run.model,
         coordinates=("alpha",),
@@ -149,19 +185,15 @@ def _twisting(run: Run, history: History, tension: Tension, share: float, ends: 
         chain=chain,
         unknowns=(chain.free,),
     )
-    phase = tension.phase + math.pi / 2
-    moments = {
-        end: Sine((1 - 2 * end) * share * tension.amplitude, tension.frequency, phase=phase)
-        for end in ends
-    }
-    return replace(
-        run.kept,
+    moment, phase = _share(run) * tension.amplitude, tension.phase + math.pi / 2
+    ends = turning_ends(run.model.scene)
+    twisting = replace(
+        run,
         model=alone,
-        time=history.time,
         drives=tuple(("alpha", float(run.model.x[-end])) for end in ends),
-        forces=tuple(moments[end] for end in ends),
+        forces=tuple(Sine((1 - 2 * end) * moment, tension.frequency, phase=phase) for end in ends),
         responses=tuple(point for point in run.responses if moving(point) == "alpha"),
         loads={},
-        snapshots=history.snapshot_time,
         modes=None,
     )
+    return solve_linear(twisting)

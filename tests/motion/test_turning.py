@@ -1,6 +1,7 @@
 """A pulsating tension turns a laid rope, at ends that are free to turn and nowhere else."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -148,6 +149,22 @@ def test_forces_and_the_tension_add():
     np.testing.assert_allclose(both, alone + pushed, atol=1e-6 * abs(both).max())
 
 
+def test_mesh_error_is_also_that_of_the_twist():
+    """It was 0 where two elements are 27 % off the twist and 55 % off the torque."""
+    response = [("alpha", LENGTH), ("M_alpha", 0.5), ("F_x", 0.5)]
+    coarse, spans = (
+        scene(gamma=1e-5).compile(elements=n).transient(TIME[:50], response=response)
+        for n in (8, None)
+    )
+    assert not spans.mesh_error.any()
+    off = np.abs(coarse.value - spans.value)
+    again = pickle.loads(pickle.dumps(coarse))
+    for history in coarse, again:
+        assert (off <= history.mesh_error + spans.error).all()
+        assert (history.mesh_error <= off + 2 * spans.error).all()
+    assert (off.max(axis=1)[:2] > 0.01 * np.abs(spans.value).max(axis=1)[:2]).all()
+
+
 REFUSED = {
     "stretching": (lambda: scene(stretching=True), {}, "tension must not be stretching where lay"),
     "lay slope": (
@@ -160,6 +177,16 @@ REFUSED = {
         lambda: scene(parts=[rd.Stop(0.5, 1.0, gap=0.1, coordinate="alpha")]),
         {},
         r"parts\[0\] must be linear on alpha where lay_coupling turns",
+    ),
+    "ratios of modes": (
+        lambda: scene().replace(damping=rd.ModalDamping([0.002] * 40)),
+        {},
+        "damping ratio must be one number where lay_coupling turns",
+    ),
+    "ratios of modes in snapshots": (
+        lambda: scene().replace(damping=rd.ModalDamping([0.002] * 40)),
+        {"response": ("z", 0.5), "snapshots": [0.01]},
+        "damping ratio must be one number where lay_coupling turns",
     ),
 }
 
