@@ -25,7 +25,8 @@ from .state import HARMONICS, MOST, SMALL, SteadyState, by_frequency, settled
 from .transfer import PanelledTransfer
 
 FIRST = 1e-3  # Share of the amplitude from which it is raised.
-STEPS = 4000  # A branch is followed for so many at most on the way to one frequency.
+STEPS = 4000  # A branch is followed for so many at most on the way to one frequency,
+FALLEN = 100  # of which so many after motion fell off it.
 TOGETHER = 16  # States are made exact so many at a time.
 WAY = 3.0  # It may go so far beyond the frequencies that are asked for, times.
 UNDAMPED = 8.0  # Undamped motion up to so many times the highest frequency is looked for.
@@ -224,8 +225,8 @@ class Path:
             return self._begun(frequency)
         if heading != self.heading:
             self._head(heading)
-        fallen, asked = False, 2 * np.pi * self.driven.asked.frequency
-        for _ in range(STEPS):
+        left, fallen, asked = STEPS, False, 2 * np.pi * self.driven.asked.frequency
+        while left > 0:
             x = self._crossing(omega)
             if x is not None and (not fallen or self._catches(x, omega)):
                 self.x, self.now = x, omega
@@ -233,8 +234,13 @@ class Path:
             reached = self.piece[1].p
             if not asked.min() / WAY <= reached <= asked.max() * WAY:
                 break
-            self._step()
-            fallen |= not self._ahead
+            try:
+                self._step()
+            except Stuck:
+                break
+            left -= 1
+            if not fallen and not self._ahead:
+                left, fallen = FALLEN, True
         return self._begun(frequency)
 
     @property
