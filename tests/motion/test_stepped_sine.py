@@ -179,6 +179,18 @@ def test_a_stop_that_is_met_at_every_amplitude_has_a_steady_state(gap):
         assert error <= small.rounding_error[0, 0] + stepped.rounding_error[0, 0]
 
 
+def test_motion_that_falls_where_nothing_is_stable_begins_at_rest():
+    """The way from the fold was followed for 3000 steps, to where no step was short enough."""
+    damping, parts = rd.RayleighDamping(6.0, 0.0), [rd.Stop(0.5, 1e4)]
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping, parts=parts)
+    model, asked = scene.compile(elements=8), {"drive": ("z", 0.5), "amplitude": 1.0}
+    swept = model.stepped_sine([8.0, 10.2], tolerance=1e-3, **asked)
+    alone = model.stepped_sine([10.2], tolerance=1e-3, **asked)
+    error = abs(swept.value[0, 1] / alone.value[0, 0] - 1)
+    assert error <= swept.rounding_error[0, 1] + alone.rounding_error[0, 0] < 1e-2
+    assert not swept.stable.any()
+
+
 # --- what has no steady state -------------------------------------------------------------------
 
 

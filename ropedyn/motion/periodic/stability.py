@@ -26,13 +26,16 @@ LOOKS = 17  # At first, beside those where H is known to change.
 ROUNDS = 40  # The way is halved so often at most.
 CLOSED = 0.05  # D is real at both ends, but for so much [rad]: there are enough harmonics.
 FINER = 2  # The slopes of forces are sampled so much closer than the forces.
-FEWEST = 8  # Harmonics at first.
+FEWEST = 8  # Harmonics at first,
+MOST = 256  # and at most, or twice those at first.
 MOVED = 0.5  # Besides a multiple, twice as many move D by at most so much of it.
 BATCH = 1 << 19  # Numbers of matrices that are looked at together.
 
 
-def growing(balance: HarmonicBalance, x: Real, omega: float, free: int) -> int | None:
-    """Return how many disturbances grow, None where that cannot be told.
+def growing(
+    balance: HarmonicBalance, x: Real, omega: float, free: int, most: int = MOST
+) -> int | None:
+    """Return how many disturbances grow, None where that cannot be told by so many harmonics.
 
     The linear scene has `free` of them itself.
     """
@@ -43,8 +46,8 @@ def growing(balance: HarmonicBalance, x: Real, omega: float, free: int) -> int |
         return free
     stiff, drag = (np.fft.fft(one, axis=2) / fine.samples for one in (felt.by_u, felt.by_v))
     harmonics = _least(balance, felt.by_u, felt.by_v, omega)
-    before = None
-    while harmonics <= fine.samples // 4:
+    before, most = None, min(max(most, 2 * harmonics), fine.samples // 4)
+    while harmonics <= most:
         strip = _Strip(fine, stiff, drag, omega, harmonics)
         way, D, size = strip.followed()
         turns = float(np.angle(D[1:] / D[:-1]).sum() / np.pi)

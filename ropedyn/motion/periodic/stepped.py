@@ -26,7 +26,8 @@ from .transfer import PanelledTransfer
 
 FIRST = 1e-3  # Share of the amplitude from which it is raised.
 STEPS = 4000  # A branch is followed for so many at most on the way to one frequency,
-FALLEN = 100  # of which so many after motion fell off it.
+FALLEN = 100  # of which so many after motion fell off it,
+QUICKLY = 128  # where so many harmonics at most tell what is stable.
 TOGETHER = 16  # States are made exact so many at a time.
 WAY = 3.0  # It may go so far beyond the frequencies that are asked for, times.
 UNDAMPED = 8.0  # Undamped motion up to so many times the highest frequency is looked for.
@@ -279,7 +280,9 @@ class Path:
 
     def _catches(self, x: Real, omega: float) -> bool:
         """Whether motion that fell off its branch stays here."""
-        return self._ahead and growing(self.balance, x, omega, self.driven.growing) == 0
+        if not self._ahead:
+            return False
+        return growing(self.balance, x, omega, self.driven.growing, QUICKLY) == 0
 
 
 def pieces(
