@@ -84,37 +84,35 @@ class HarmonicBalance:
         """Return the harmonics of the forces, (points, K + 1)."""
         return self.coefficients(self.force.force(*self.motion(self.complex(x), omega)))
 
+    def pushed(self, x: Real, omega: Real | float) -> Real:
+        """Return the motion that the forces alone make, as unknowns."""
+        rate = np.asarray(omega)[..., None]
+        H = self.transfer.at(rate * self.order)[..., : self.points, :-1]
+        return self.real(_on(H, self.forces(x, omega)))
+
     def driven(self, share: Real | float = 1.0) -> Complex:
         """Return the harmonics of the drive, (K + 1,)."""
         F = np.zeros((*np.shape(share), self.harmonics + 1), dtype=np.complex128)
         F[..., self.turn] = share * self.amplitude / 2
         return F
 
-    def at(
-        self, x: Real, omega: Real | float, share: Real | float = 1.0, part: Real | float = 1.0
-    ) -> tuple[Linear, Real, Real]:
-        """Return the balance about a motion under a share of the drive and a part of the forces.
-
-        Its slope is by omega; then that by the share, and that by the part.
-        """
+    def at(self, x: Real, omega: Real | float, share: Real | float = 1.0) -> tuple[Linear, Real]:
+        """Return the balance about a motion: slope by omega, and by the share of the drive."""
         q, k, m = self.complex(x), self.order, self.points
         rate = np.asarray(omega)[..., None]
         time, u, v = self.motion(q, omega)
         felt = self.force.felt(time, u, v)
-        force, weaker = self.coefficients(felt.force), np.asarray(part)[..., None, None]
-        felt = felt._replace(by_u=weaker[..., None] * felt.by_u, by_v=weaker[..., None] * felt.by_v)
         H, slope = (one[..., :m, :] for one in self.transfer.with_slope(rate * k))
         push = np.empty((*q.shape[:-2], m + 1, len(k)), dtype=np.complex128)
-        push[..., :m, :], push[..., m, :] = weaker * force, self.driven(share)
+        push[..., :m, :], push[..., m, :] = self.coefficients(felt.force), self.driven(share)
         gap = q - _on(H, push)
         by_omega = -k * _on(slope, push)
         if felt.by_v.any():
             turned = np.einsum("...pjn,...jn->...pn", felt.by_v, v / rate[..., None])
             by_omega -= _on(H[..., :-1], self.coefficients(turned))
         by_share = -H[..., -1].swapaxes(-1, -2) * self.driven()
-        by_part = -_on(H[..., :-1], force)
         linear = Linear(self.real(gap), self._jacobian(H, felt, omega), self.real(by_omega))
-        return linear, self.real(by_share), self.real(by_part)
+        return linear, self.real(by_share)
 
     def _jacobian(self, H: Complex, felt: Felt, omega: Real | float) -> Real:
         """Return the slope of what is not balanced by the unknowns."""

@@ -47,6 +47,28 @@ class PointForces(Protocol):
 
 
 @dataclass(frozen=True)
+class Weakened:
+    """A part of some forces, one for each motion."""
+
+    whole: PointForces
+    part: Real | float
+
+    @property
+    def samples(self) -> int:
+        """As many."""
+        return self.whole.samples
+
+    def force(self, time: Real, u: Real, v: Real) -> Real:
+        """Return the part of the forces."""
+        return np.asarray(self.part)[..., None, None] * self.whole.force(time, u, v)
+
+    def felt(self, time: Real, u: Real, v: Real) -> Felt:
+        """Return it with its slopes."""
+        part, felt = np.asarray(self.part)[..., None, None], self.whole.felt(time, u, v)
+        return Felt(part * felt.force, *(part[..., None] * one for one in felt[1:]))
+
+
+@dataclass(frozen=True)
 class PointLaws:
     """Laws of points, each on its own."""
 

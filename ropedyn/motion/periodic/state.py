@@ -49,7 +49,7 @@ def by_frequency(driven: Driven, balance: HarmonicBalance) -> Branch:
     """Return a branch over the base frequency, that nowhere begins yet."""
 
     def linearise(x: Real, omega: Real | float) -> tuple[Real, Real, Real]:
-        about, *_ = balance.at(x, omega)
+        about, _ = balance.at(x, omega)
         return about.gap, about.jacobian, about.slope
 
     def called(omega: float) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import groupby, islice
 
@@ -19,6 +19,7 @@ from .asked import SteppedSine
 from .balance import HarmonicBalance
 from .continuation import ENOUGH, ROUGHLY, Branch, Linearise, Place, Stuck
 from .driven import Driven, known_to
+from .laws import Weakened
 from .slipping import slipping
 from .stability import growing
 from .state import HARMONICS, MOST, SMALL, SteadyState, by_frequency, settled
@@ -154,12 +155,13 @@ def at_rest(driven: Driven, balance: HarmonicBalance, frequency: float) -> Real:
     omega = 2 * np.pi * frequency / balance.turn
 
     def by_amplitude(x: Real, share: Real | float) -> tuple[Real, Real, Real]:
-        about, by_share, _ = balance.at(x, np.full(np.shape(share), omega), share)
+        about, by_share = balance.at(x, np.full(np.shape(share), omega), share)
         return about.gap, about.jacobian, by_share
 
     def by_laws(x: Real, part: Real | float) -> tuple[Real, Real, Real]:
-        about, _, by_part = balance.at(x, np.full(np.shape(part), omega), 1.0, part)
-        return about.gap, about.jacobian, by_part
+        weak = replace(balance, force=Weakened(balance.force, part))
+        about, _ = weak.at(x, np.full(np.shape(part), omega))
+        return about.gap, about.jacobian, -balance.pushed(x, np.full(np.shape(part), omega))
 
     linear = driven.linear_motion(balance, omega)
     small = SMALL * float(np.linalg.norm(linear))
