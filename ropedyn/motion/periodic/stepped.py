@@ -17,7 +17,7 @@ from ...response.frf import FRF
 from ...response.harmonic import solve_harmonic
 from .asked import SteppedSine
 from .balance import HarmonicBalance
-from .continuation import ENOUGH, ROUGHLY, Branch, Linearise, Place, Stuck
+from .continuation import ENOUGH, ROUGHLY, Branch, Place, Stuck
 from .driven import Driven, known_to
 from .laws import Weakened
 from .slipping import slipping
@@ -164,22 +164,15 @@ def at_rest(driven: Driven, balance: HarmonicBalance, frequency: float) -> Real:
         return about.gap, about.jacobian, -balance.pushed(x, np.full(np.shape(part), omega))
 
     linear = driven.linear_motion(balance, omega)
-    small = SMALL * float(np.linalg.norm(linear))
-
-    def raised(linearise: Linearise, begin: Real, what: str) -> Real | None:
-        called = f"{{:.3g}} of the {what} at {frequency!r} Hz".format
-        nowhere = Place(np.zeros(0), FIRST, np.zeros(0), 0.0)
-        branch = Branch(linearise, nowhere, 1.0, small, called, step=0.25)
-        return _raised(branch, begin, linear)
-
-    x = raised(by_amplitude, FIRST * linear, "amplitude")
-    if x is None:
-        x = raised(by_laws, linear, "laws' forces")
-    if x is None:
-        raise SolveError(
-            f"frequency {frequency!r} Hz: no steady state was found on the way from rest"
-        )
-    return x
+    small, nowhere = (
+        SMALL * float(np.linalg.norm(linear)),
+        Place(np.zeros(0), FIRST, np.zeros(0), 0.0),
+    )
+    for linearise, begin in (by_amplitude, FIRST * linear), (by_laws, linear):
+        x = _raised(Branch(linearise, nowhere, 1.0, small, str, step=0.25), begin, linear)
+        if x is not None:
+            return x
+    raise SolveError(f"frequency {frequency!r} Hz: no steady state was found on the way from rest")
 
 
 def _raised(branch: Branch, begin: Real, end: Real) -> Real | None:
