@@ -162,7 +162,7 @@ def test_tension_that_never_begins_anew_with_the_drive_is_refused():
 @pytest.mark.parametrize("gap", [0.0, 1e-5])
 def test_a_stop_that_is_met_at_every_amplitude_has_a_steady_state(gap):
     """Of 26 frequencies 17 were refused; the motion over time is exact between events."""
-    f, drive = 14.0, ("z", 0.5)
+    f, drive = 16.0, ("z", 0.5)
     parts = [rd.Stop(0.75, 4282.6, gap=gap)]
     scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ViscousDamping(0.8), parts=parts)
     model, time = scene.compile(elements=4, element="rigid"), np.arange(12_801) / (64 * f)
@@ -170,7 +170,7 @@ def test_a_stop_that_is_met_at_every_amplitude_has_a_steady_state(gap):
     history = model.transient(time, drive=drive, force=rd.Sine(6.0, f, phase=np.pi / 2))
     last, turns = slice(-513, -1), np.exp(-2j * np.pi * f * time)
     settled = 2 * np.mean(history.value[0, last] * turns[last]) / 6.0
-    assert abs(stepped.value[0, 0] / settled - 1) <= stepped.rounding_error[0, 0]  # 0.04 of it
+    assert abs(stepped.value[0, 0] / settled - 1) <= stepped.rounding_error[0, 0]  # 0.03 of it
     assert stepped.rounding_error[0, 0] <= 1e-5
     assert stepped.stable.all()
     if gap == 0:
