@@ -20,7 +20,8 @@ from ..chain.port import Point
 from ..chain.tip import is_tip
 from ..curves.measured import Measured
 from ..response.moved_end import is_end
-from ..scene.force import Force, from_words, words
+from ..scene.force import Force
+from ..scene.toml import force_from, force_words
 from ..signal.ringdown import RingDown, ring_down
 from ..signal.spectrum import Spectrum, amplitude, spectrum
 from .response_estimate import estimated
@@ -37,7 +38,13 @@ def ended_by(error: BaseException | None) -> str:
     return "interrupted" if isinstance(error, KeyboardInterrupt) else told
 
 
-KEPT_LAW = kept_as(lambda law: list(map(words, law)), tuple)
+class ForceWords(tuple[Any, ...]):
+    """Forces as a file tells them."""
+
+    __slots__ = ()
+
+
+KEPT_LAW = kept_as(lambda law: list(map(force_words, law)), ForceWords)
 """How a file keeps the forces that drive: in words, which their values at the times complete."""
 
 
@@ -147,8 +154,9 @@ class History(Answer):
     law: tuple[Force, ...] = field(default=(), repr=False, metadata=KEPT_LAW)
 
     def __post_init__(self) -> None:
-        law = (from_words(one, self.time, self.force[k]) for k, one in enumerate(self.law))
-        object.__setattr__(self, "law", tuple(law))
+        if isinstance(self.law, ForceWords):
+            law = (force_from(one, self.time, f) for one, f in zip(self.law, self.force))
+            object.__setattr__(self, "law", tuple(law))
         super().__post_init__()
 
     energy = Read[dict[str, Real]]("balance", "Energies over time [J], each shape (t,).")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import KW_ONLY, dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -343,27 +343,6 @@ def is_sampled(force: Force) -> bool:
 
 
 KINDS = (Sine, Chirp, Step, Impulse)  # What users give beside arrays.
-
-
-def words(force: Force) -> Any:
-    """Return a force as JSON knows it, without its samples."""
-    if isinstance(force, Sum):
-        return list(map(words, force.forces))
-    if isinstance(force, Samples):
-        return None
-    return {"kind": type(force).__name__, **vars(force)}
-
-
-def from_words(said: Any, time: Real, sample: Real) -> Any:
-    """Return the force of its words and of what it is at times, what is a force as it is."""
-    if isinstance(said, list):
-        known = [from_words(one, time, sample) for one in said if one is not None]
-        rest = sample - Sum(tuple(known)).value(time)
-        return Sum((*known, *(Samples(time, rest) for one in said if one is None)))
-    if isinstance(said, dict):
-        kinds = {kind.__name__: kind for kind in KINDS}
-        return kinds[said["kind"]](**{key: said[key] for key in said if key != "kind"})
-    return Samples(time, sample) if said is None else said
 
 
 def forces(given: object, name: str, time: Real, unit: str = ANY) -> Force:

@@ -11,12 +11,15 @@ from typing import Any, TypeVar
 
 from ..axis.axis import Axis
 from ..base import check
+from ..base.array import Real
 from ..base.atomic import write_bytes
 from ..base.errors import SceneError, at_once
 from ..base.parameter import Description, required
 from ..base.reading import reading
 from . import damping
 from .end import End
+from .force import KINDS as FORCES
+from .force import Force, Samples, Sum
 from .gravity import Gravity
 from .parts import part
 from .parts.law import NodeForce
@@ -80,6 +83,24 @@ def document(scene: Any) -> dict[str, Any]:
     if scene.parts:
         found["parts"] = [_named(one) for one in scene.parts]
     return found
+
+
+def force_words(force: Force) -> Any:
+    """Return a force as JSON knows it, without its samples; a sum has those of its parts."""
+    if isinstance(force, Sum):
+        each = map(force_words, force.forces)
+        return [one for said in each for one in (said if isinstance(said, list) else [said])]
+    return None if isinstance(force, Samples) else _named(force)
+
+
+def force_from(said: Any, time: Real, sample: Real) -> Force:
+    """Return the force of its words and of what it is at times: what others leave is sampled."""
+    kinds = {kind.__name__: kind for kind in FORCES}
+    whole = said if isinstance(said, list) else [said]
+    known: list[Force] = [_one(one, "law", kinds) for one in whole if one is not None]
+    if None in whole:
+        known.append(Samples(time, sample - Sum(tuple(known)).value(time)))
+    return Sum(tuple(known)) if isinstance(said, list) else known[0]
 
 
 def _plain(thing: Any) -> dict[str, Any]:
