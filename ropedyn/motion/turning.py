@@ -131,16 +131,15 @@ def _refuse_numbered(run: Run) -> None:
 
 def _with_twist(run: Run, history: History) -> History:
     """Add twist, torque and tension to a motion."""
-    tension = _pulsating(run)
-    value, snapshot, error = history.value.copy(), history.snapshot.copy(), history.error.copy()
+    tension, value = _pulsating(run), history.value.copy()
     extra = _pulsation(tension, history.time, run.order)
     for k, point in enumerate(run.responses):
         value[k] += {"F_x": 1.0, "M_alpha": _share(run)}.get(point[0], 0.0) * extra
     if not _twists(run):
-        return changed(history, value=value, error=error, snapshot=snapshot)
+        return changed(history, value=value)
     own = [k for k, point in enumerate(run.responses) if moving(point) == "alpha"]
     until = replace(run.kept, time=history.time, snapshots=history.snapshot_time)
-    twist = _twist(until)
+    twist, error, snapshot = _twist(until), history.error.copy(), history.snapshot.copy()
     value[own] += twist.value
     error[own] += twist.error
     at = run.model.coordinates.index("alpha")
@@ -194,6 +193,8 @@ def _twist(run: Run) -> History:
         forces=tuple(Sine((1 - 2 * end) * moment, tension.frequency, phase=phase) for end in ends),
         responses=tuple(point for point in run.responses if moving(point) == "alpha"),
         loads={},
+        kicks={},
+        coarse=None,
         modes=None,
     )
     return solve_linear(twisting)
