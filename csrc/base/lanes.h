@@ -96,7 +96,6 @@ RD_INLINE lanes l_select(lane_mask m, lanes a, lanes b)
 typedef double half_lanes __attribute__((vector_size(4 * RD_LANES)));
 
 /* a > b and a >= b by halves: vectors longer than a register gcc 12 compares number by number */
-
 RD_INLINE lane_mask l_above(lanes a, lanes b)
 {
     half_lanes x[2], y[2];

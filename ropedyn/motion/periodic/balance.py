@@ -84,12 +84,6 @@ class HarmonicBalance:
         """Return the harmonics of the forces, (points, K + 1)."""
         return self.coefficients(self.force.force(*self.motion(self.complex(x), omega)))
 
-    def pushed(self, x: Real, omega: Real | float) -> Real:
-        """Return the motion that the forces alone make, as unknowns."""
-        rate = np.asarray(omega)[..., None]
-        H = self.transfer.at(rate * self.order)[..., : self.points, :-1]
-        return self.real(_on(H, self.forces(x, omega)))
-
     def driven(self, share: Real | float = 1.0) -> Complex:
         """Return the harmonics of the drive, (K + 1,)."""
         F = np.zeros((*np.shape(share), self.harmonics + 1), dtype=np.complex128)

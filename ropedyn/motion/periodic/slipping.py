@@ -281,16 +281,13 @@ class Decays:
 
     def __init__(self, first: int) -> None:
         self.next, self.as_before = first, False
-        self.change: list[float] = []
 
     def go_on(self, motion: Sequence[Complex]) -> bool:
         """Whether the last two times that it was asked the changes had not stayed as before."""
-        if len(motion) > 1:
-            self.change.append(float(np.abs(motion[-1] - motion[-2]).max()))
         if len(motion) < self.next:
             return True
-        half = self.next // 2
-        late, early = max(self.change[half:]), max(self.change[half // 2 : half])
+        change, half = np.abs(np.diff(motion, axis=0)).max(axis=1), self.next // 2
+        late, early = float(change[half:].max()), float(change[half // 2 : half].max())
         before, self.as_before = self.as_before, late > AS_BEFORE * early
         self.next *= 2
         return not (before and self.as_before)

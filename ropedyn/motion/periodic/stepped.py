@@ -161,13 +161,12 @@ def at_rest(driven: Driven, balance: HarmonicBalance, frequency: float) -> Real:
     def by_laws(x: Real, part: Real | float) -> tuple[Real, Real, Real]:
         weak = replace(balance, force=Weakened(balance.force, part))
         about, _ = weak.at(x, np.full(np.shape(part), omega))
-        return about.gap, about.jacobian, -balance.pushed(x, np.full(np.shape(part), omega))
+        # gap = x - linear - part H f
+        return about.gap, about.jacobian, (about.gap - x + linear) / np.asarray(part)[..., None]
 
     linear = driven.linear_motion(balance, omega)
-    small, nowhere = (
-        SMALL * float(np.linalg.norm(linear)),
-        Place(np.zeros(0), FIRST, np.zeros(0), 0.0),
-    )
+    small = SMALL * float(np.linalg.norm(linear))
+    nowhere = Place(np.zeros(0), FIRST, np.zeros(0), 0.0)
     for linearise, begin in (by_amplitude, FIRST * linear), (by_laws, linear):
         x = _raised(Branch(linearise, nowhere, 1.0, small, str, step=0.25), begin, linear)
         if x is not None:
