@@ -46,7 +46,7 @@ class PointForces(Protocol):
         """Return them with their slopes."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Weakened:
     """A part of some forces, one for each motion."""
 
