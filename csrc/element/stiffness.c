@@ -23,6 +23,12 @@ static bool is_string(const struct rd_element *element)
            rd_element_find(element, RD_BETA) == element->width;
 }
 
+/* sections and tension shape it together */
+static bool is_tensed_beam(const struct rd_element *element)
+{
+    return element->kind == RD_TENSED && rd_element_find(element, RD_BETA) < element->width;
+}
+
 /* integral of (s - r)^m (p - r)^n dr from 0 to min(s, p), m and n 0 or 1 */
 static double overlap(double s, int m, double p, int n)
 {
@@ -260,8 +266,7 @@ static bool is_inseparable(const struct rd_element *element)
 {
     const size_t z = rd_element_find(element, RD_Z);
     const bool opens = element->hinge && z < element->width && element->hinge[z] != 0;
-    return opens || (element->sag != 0 && is_string(element)) ||
-           (element->kind == RD_TENSED && rd_element_find(element, RD_BETA) < element->width);
+    return opens || (element->sag != 0 && is_string(element)) || is_tensed_beam(element);
 }
 
 enum rd_status rd_element_stiffness(const struct rd_element *element, double *elastic,
@@ -296,11 +301,92 @@ static bool tip_share(const struct rd_element *element, double s, double *share)
     return true;
 }
 
+/* block (i, j) of the matrix of a part of the element, added to K (width, width) */
+static void add_block(size_t w, const double _Complex *part, size_t i, size_t j, double *K)
+{
+    for (size_t k = 0; k < w; k++)
+        for (size_t m = 0; m < w; m++)
+            K[k * w + m] += creal(part[(i * w + k) * 2 * w + j * w + m]);
+}
+
+/* A node at s, 0 < s < l, yields by the inverse of what both parts hold it with and moves by that
+   times what they pull it with, as shape (width, 2 width), which may be NULL. */
+static bool parted(const struct rd_element *element, double s, double *yields, double *shape)
+{
+    const size_t w = element->width;
+    double _Complex left[N * N], right[N * N];
+    double pulled[2][W * W] = {0}, moved[W * W];
+    struct rd_element part = *element;
+    part.length = s;
+    if (closed_matrix(&part, 1, 1, left) != RD_OK)
+        return false;
+    part.length = element->length - s;
+    if (closed_matrix(&part, 1, 1, right) != RD_OK)
+        return false;
+    memset(yields, 0, w * w * sizeof *yields);
+    add_block(w, left, 1, 1, yields);
+    add_block(w, right, 0, 0, yields);
+    if (!rd_dense_invert(w, yields))
+        return false;
+    add_block(w, left, 1, 0, pulled[0]);
+    add_block(w, right, 0, 1, pulled[1]);
+    for (size_t end = 0; shape && end < 2; end++) {
+        rd_dense_multiply(w, w, w, yields, pulled[end], moved);
+        for (size_t i = 0; i < w; i++)
+            for (size_t j = 0; j < w; j++)
+                shape[(i * 2 + end) * w + j] = -moved[i * w + j];
+    }
+    return true;
+}
+
+/* the shape at a node */
+static void at_node(size_t w, size_t end, double *shape)
+{
+    memset(shape, 0, 2 * w * w * sizeof *shape);
+    for (size_t i = 0; i < w; i++)
+        shape[(i * 2 + end) * w + i] = 1;
+}
+
+/* shape of a tensed beam without the hinge */
+static bool beam_shape(const struct rd_element *element, double s, double *shape)
+{
+    double yields[W * W];
+    if (s > 0 && s < element->length)
+        return parted(element, s, yields, shape);
+    at_node(element->width, s > 0, shape);
+    return true;
+}
+
+/* its local flexibility: the node further right yields and takes the other along */
+static bool beam_local(const struct rd_element *element, double s, double p, double *local)
+{
+    const size_t w = element->width;
+    const double first = fmin(s, p), last = fmax(s, p);
+    double yields[W * W], shape[W * N], share[W * W], along[W * W];
+    memset(local, 0, w * w * sizeof *local);
+    if (first <= 0 || last >= element->length)
+        return true;
+    struct rd_element part = *element;
+    part.length = last;
+    if (!parted(element, last, yields, NULL) || !beam_shape(&part, first, shape))
+        return false;
+    for (size_t i = 0; i < w; i++)
+        memcpy(share + i * w, shape + (i * 2 + 1) * w, w * sizeof *share);
+    rd_dense_multiply(w, w, w, share, yields, along);
+    if (s <= p)
+        memcpy(local, along, w * w * sizeof *local);
+    else
+        rd_dense_transpose(w, w, along, local);
+    return true;
+}
+
 /* shape without the hinge: u(s) = F(s) u_a + G(s, l) G^-1 (u_b - F u_a) */
 static bool closed_shape(const struct rd_element *element, double s, double *shape)
 {
     const size_t w = element->width;
     double F[W * W], Fs[W * W], share[W * W], carried[W * W];
+    if (is_tensed_beam(element))
+        return beam_shape(element, s, shape);
     if (!tip_share(element, s, share))
         return false;
     transfer(element, element->length, F);
@@ -320,6 +406,8 @@ static bool closed_local(const struct rd_element *element, double s, double p, d
 {
     const size_t w = element->width;
     double share[W * W], Glp[W * W], carried[W * W];
+    if (is_tensed_beam(element))
+        return beam_local(element, s, p, local);
     if (!tip_share(element, s, share))
         return false;
     cantilever(element, s, p, local);
@@ -333,10 +421,11 @@ static bool closed_local(const struct rd_element *element, double s, double p, d
     return true;
 }
 
-/* the stiffness that belongs to the static shape: tension is a string beside the element */
+/* the stiffness that belongs to the static shape: tension is a string beside other beams */
 static bool shape_matrix(const struct rd_element *element, double _Complex *K)
 {
-    return closed_matrix(element, 1, is_string(element) ? 1 : 0, K) == RD_OK;
+    const bool acts = is_string(element) || is_tensed_beam(element);
+    return closed_matrix(element, 1, acts ? 1 : 0, K) == RD_OK;
 }
 
 enum rd_status rd_element_shape(const struct rd_element *element, double s, double *shape)

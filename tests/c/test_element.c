@@ -521,6 +521,30 @@ static void string_and_twist_shapes_are_straight(void)
     }
 }
 
+/* 1, s, cosh and sinh of k s, k^2 = T/B: B z'''' = T z'' */
+static void tensed_bending_shape_is_hyperbolic(void)
+{
+    struct piece piece;
+    double shape[8];
+    const struct rd_section section = {.bending = 5};
+    piece_make(&piece, "zb", RD_TENSED, 2000, &section);
+    const double k = 20, C = cosh(k * L), S = sinh(k * L);
+    const double node[4][4] = {{1, 0, 1, 0}, {0, 1, L, 1}, {1, 0, C, k * S}, {0, k, S, k * C}};
+    for (int i = 0; i <= 16; i++) {
+        const double s = i < 8 ? L * i / 8 : L * (1 - pow(10, 7 - i)), c = cosh(k * s);
+        const double z[4] = {1, s, c, sinh(k * s)}, beta[4] = {0, 1, k * z[3], k * c};
+        CHECK_INT(rd_element_shape(&piece.element, s, shape), RD_OK);
+        for (int f = 0; f < 4; f++) {
+            double sum[2] = {0};
+            for (int j = 0; j < 8; j++)
+                sum[j / 4] += shape[j] * node[f][j % 4];
+            const double near = fmin(s, L - s), loss = near > 0 ? L / near : 1;
+            CHECK_ABS(sum[0], z[f], 1e-14 * C, condition);
+            CHECK_ABS(sum[1], beta[f], 1e-14 * C * k * loss, condition);
+        }
+    }
+}
+
 /* stiffness of an element of this length, T = 0 but for strings; in w x w blocks */
 static void part_stiffness(const struct piece *of, double length, double *K)
 {
@@ -539,7 +563,8 @@ static void node_between_moves_as_the_shape_says(const struct example *of, doubl
     struct piece piece;
     double left[N * N], right[N * N], shape[W * N], local[W * W], g[W];
     struct example untensed = *of;
-    untensed.tension = strchr(of->coordinates, 'b') != NULL ? 0 : of->tension;
+    if (strchr(of->coordinates, 'b') != NULL && of->kind != RD_TENSED)
+        untensed.tension = 0;
     example_make(&piece, &untensed);
     const size_t w = piece.element.width;
     units(&piece.element, g);
@@ -681,6 +706,7 @@ int main(void)
     free_hinge_leaves_the_propped_beam();
     exactly_critical_compression_is_refused();
     bending_shape_is_the_cubic();
+    tensed_bending_shape_is_hyperbolic();
     string_and_twist_shapes_are_straight();
     local_flexibility_is_the_clamped_beam();
     local_flexibility_of_a_string_is_a_triangle();
