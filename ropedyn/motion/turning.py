@@ -30,7 +30,7 @@ from ..scene.parts.stretch import refuse_uneven
 from ..scene.scene import Scene
 from ..scene.tension import Tension
 from .acting import scene_laws
-from .history import History
+from .history import Balance, History
 from .linear import solve_linear
 from .moved import against_spans
 from .periodic.asked import SteppedSine
@@ -51,6 +51,8 @@ def turned(run: Run, solve: Callable[[Run], History]) -> History:
     _refuse(run.model, [moving(point) for point in run.responses if point[0] not in OF_FORCE])
     _refuse_numbered(run)
     history = solve(run)
+    if turning_ends(scene):
+        history = changed(history, balance=_refuse_energy)
     return _with_twist(run, history) if len(history.time) > 1 else history
 
 
@@ -111,6 +113,13 @@ def _refuse(model: Compiled, asked: list[str]) -> None:
     for one in scene_laws(scene):
         if turning_ends(scene) and one.point[0] == "alpha":
             raise SceneError(f"{one.name} must be linear on alpha {WHY} that pulsates")
+
+
+def _refuse_energy() -> Balance:
+    raise SceneError(
+        f"energy is not told {WHY} that pulsates: what that puts in depends on which end gives way "
+        "to it, which is not said"
+    )
 
 
 def _twists(run: Run) -> bool:

@@ -237,3 +237,14 @@ def test_a_sag_that_would_pulsate_with_the_tension_is_refused_by_name():
         model.stepped_sine([0.3], amplitude=1.0, **asked)
     flat = of.without("sag").compile(elements=16)
     assert np.isfinite(flat.transient(TIME, force=rd.Step(1.0), **asked).value).all()
+
+
+def test_energy_is_refused_where_the_tension_turns_an_end():
+    """It said that of the drives alone, while the twist by the tension had more."""
+    middle = ("z", LENGTH / 2)
+    asked = {"drive": middle, "force": rd.Sine(1.0, 40.0), "response": middle}
+    model = scene().compile(elements=4)
+    with pytest.raises(rd.SceneError, match="energy is not told where lay_coupling turns the rope"):
+        model.transient(TIME[:5], **asked).energy["kinetic"]
+    held = scene(ends=("clamped", "clamped")).compile(elements=4)
+    assert held.transient(TIME[:5], **asked).energy["kinetic"].any()

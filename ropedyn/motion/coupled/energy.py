@@ -12,14 +12,16 @@ import numpy as np
 
 from ...base.array import Real
 from ...base.errors import SceneError, SolveError
-from ...chain.port import moving
+from ...chain.port import local, moving
+from ...eigen.damped.rates import Rates, elastic
 from ..acting import scene_laws
 from ..history import Balance
+from ..modal.energy_balance import DrivenModes
 from ..request import TOLERANCE, Run
 from ..smooth.passage import Steps
 from ..smooth.system import OutputTimes
 from .steps import CoupledPassage, StepsTaken
-from .system import CoupledSystem, moving_together
+from .system import CoupledSystem, moving_together, tension_of
 
 NAMES = ("kinetic", "strain", "input", "dissipated", "laws")
 MOST_STEPS = 4_000_000
@@ -29,6 +31,8 @@ ROUNDING = 1e-12  # Energies of less than this part of the largest are not told.
 def balance(run: Run) -> Balance:
     """Return the energies at the times of a run on a chain."""
     total = np.zeros((len(NAMES), len(run.time)))
+    for component in run.model.components:
+        total[:4] += _inside_elements(run, component)
     laws = scene_laws(run.model.scene)
     calls = any(one.law.kind == "call" for one in laws)
     for component in moving_together(run.model):
@@ -39,6 +43,24 @@ def balance(run: Run) -> Balance:
     if all(one.law.kind == "power" for one in laws):
         del energy["laws"]
     return Balance(energy)
+
+
+def _inside_elements(run: Run, component: tuple[str, ...]) -> Real:
+    """Return the first four energies of elements that are driven between their nodes."""
+    model, chain = run.model, run.model.chain.only(component)
+    drive = [k for k, place in enumerate(run.places) if moving(place) in component]
+    places = [run.places[k] for k in drive]
+    each = [[local(chain, model.x, component, a, b) for a in places] for b in places]
+    rest = np.array(each).reshape(len(drive), len(drive))
+    if not rest.any():
+        return np.zeros((4, len(run.time)))
+    lag = {*Rates.of(model.scene.dampings).linear[elastic(chain)].real}
+    if tension_of(model, component) or len(lag) > 1:
+        raise SceneError(
+            "drive must be at nodes for energy where the tension varies, or where sections and "
+            f"tension are damped each in its own way, got {', '.join(map(str, places))}"
+        )
+    return np.stack(DrivenModes.without(run, drive, rest, lag.pop()).energies())
 
 
 def _agreed(system: CoupledSystem, run: Run) -> Real:

@@ -16,7 +16,7 @@ values of itself a second, or 16 and more between two times.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
@@ -91,6 +91,15 @@ class DrivenModes:
         lag = -1 / float(own.p[0]) if len(own.p) else 0.0
         rest = own.r[..., 0] * lag if lag else own.rest
         return cls(run.time, [run.pushes[d] for d in share.drive], own, lag, rest)
+
+    @classmethod
+    def without(cls, run: Run, drive: Sequence[int], rest: Real, lag: float) -> DrivenModes:
+        """Take what follows some of all that drives without any mode."""
+        own = _nothing(0, len(drive))
+        none = np.zeros((*rest.shape, 0))
+        return cls(
+            run.time, [run.pushes[d] for d in drive], own._replace(a=none, b=none), lag, rest
+        )
 
     def energies(self) -> tuple[Real, Real, Real, Real]:
         """Return kinetic, strain, input and dissipated, each (t,)."""
