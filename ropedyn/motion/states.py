@@ -293,7 +293,13 @@ def _parted(
     parted = asked.parted(eigenvalue, circles)
     rest = parted.rest
     if not np.isfinite(beyond):  # only rounding is there, but of what has no inertia
-        rest = np.where(np.abs(rest) <= ROUND * (np.abs(parted.whole) + parted.size), 0.0, rest)
+        size = np.abs(parted.whole) + parted.size
+        # where points move that others do not drive, what both have of their own
+        same = [[p == watched for watched in asked.responses] for p in asked.drives]
+        own = size * np.array(same).reshape(size.shape)
+        drive, response = (own.max(axis=axis, initial=0.0) for axis in (1, 0))
+        size = np.maximum(size, np.sqrt(np.multiply.outer(drive, response)))
+        rest = np.where(np.abs(rest) <= ROUND * size, 0.0, rest)
     return parted.residue, rest.T
 
 
