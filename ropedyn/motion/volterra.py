@@ -194,9 +194,13 @@ def integrate(run: Run) -> History:
         cost=Cost("volterra", elements, moved.modes, stepped.count),
         error=moved.error,
         mesh_error=partial(against_spans, kept, moved.value, integrate),
-        balance=partial(of_chain, kept),
+        balance=partial(of_chain, kept, _values),
         stopped=ended_by(stopped),
     )
+
+
+def _values(run: Run) -> Real:
+    return integrate(run).value
 
 
 def _ended(run: Run, ended: Ended) -> History:

@@ -6,13 +6,13 @@ nothing drives; of what drives, the force in the middle of a step times the way.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
 
 import numpy as np
 
 from ...base.array import Real
 from ...base.errors import SceneError, SolveError
-from ...chain.port import local, moving
+from ...chain.port import Point, local, locate, moving
 from ...eigen.damped.rates import Rates, elastic
 from ..acting import scene_laws
 from ..history import Balance
@@ -25,11 +25,14 @@ from .system import CoupledSystem, moving_together, tension_of
 
 NAMES = ("kinetic", "strain", "input", "dissipated", "laws")
 MOST_STEPS = 4_000_000
+FELT = 4.0  # Energies are off by so many times what motion is, relative: 0.1 to 1.6 measured.
 ROUNDING = 1e-12  # Energies of less than this part of the largest are not told.
 
+Moves = Callable[[Run], Real]
 
-def balance(run: Run) -> Balance:
-    """Return the energies at the times of a run on a chain."""
+
+def balance(run: Run, moves: Moves | None = None) -> Balance:
+    """Return the energies at the times of a run on a chain; `moves` tells motion exactly."""
     total = np.zeros((len(NAMES), len(run.time)))
     for component in run.model.components:
         total[:4] += _inside_elements(run, component)
@@ -37,8 +40,13 @@ def balance(run: Run) -> Balance:
     calls = any(one.law.kind == "call" for one in laws)
     for component in moving_together(run.model):
         if calls or any(moving(place) in component for place in run.places):
-            look = OutputTimes(slice(0, 0), run.time, 0)
-            total += _agreed(CoupledSystem.coupled(run, component, [], [look]), run)
+            places = [] if moves is None else _lagging(run, component)
+            looks = [OutputTimes(slice(0, len(places)), run.time, 0)] if places else []
+            energies, moved = _agreed(CoupledSystem.coupled(run, component, places, looks), run)
+            total += energies
+            if moves is not None and places:
+                exact = moves(run.but(responses=tuple(places), order=0))
+                _refuse_other_motion(exact, moved[0], run)
     energy = dict(zip(NAMES, total))
     if all(one.law.kind == "power" for one in laws):
         del energy["laws"]
@@ -54,7 +62,7 @@ def _inside_elements(run: Run, component: tuple[str, ...]) -> Real:
     rest = np.array(each).reshape(len(drive), len(drive))
     if not rest.any():
         return np.zeros((4, len(run.time)))
-    lag = {*Rates.of(model.scene.dampings).linear[elastic(chain)].real}
+    lag = _lags(run, component)
     if tension_of(model, component) or len(lag) > 1:
         raise SceneError(
             "drive must be at nodes for energy where the tension varies, or where sections and "
@@ -63,8 +71,34 @@ def _inside_elements(run: Run, component: tuple[str, ...]) -> Real:
     return np.stack(DrivenModes.without(run, drive, rest, lag.pop()).energies())
 
 
-def _agreed(system: CoupledSystem, run: Run) -> Real:
-    """Halve the steps until two runs agree within the tolerance, (names, t)."""
+def _lags(run: Run, component: tuple[str, ...]) -> set[float]:
+    """Return how sections and tension lag [s]: one number where both do so alike."""
+    holding = elastic(run.model.chain.only(component))
+    return {*Rates.of(run.model.scene.dampings).linear[holding].real}
+
+
+def _lagging(run: Run, component: tuple[str, ...]) -> list[Point]:
+    """Return driven nodes that dampers of first order in the tension may move otherwise."""
+    if run.model.element != "tensed" or len(_lags(run, component)) == 1:
+        return []
+    driven = dict.fromkeys(place for place in run.places if moving(place) in component)
+    return [place for place in driven if locate(run.model.x, place[1])[1] is None]
+
+
+def _refuse_other_motion(exact: Real, moved: Real, run: Run) -> None:
+    tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    apart, most = FELT * np.abs(moved - exact).max(axis=1), np.abs(exact).max(axis=1)
+    share = np.divide(apart, most, out=np.zeros_like(apart), where=most > 0)
+    if share.max() > tolerance:
+        raise SolveError(
+            f"energy is known to {share.max():.1e} only, not to {tolerance:g}: sections of tensed "
+            "elements are damped and their tension is not, which modes tell to first order. More "
+            'elements, or element="rigid", help'
+        )
+
+
+def _agreed(system: CoupledSystem, run: Run) -> tuple[Real, list[Real]]:
+    """Halve the steps until two runs agree, (names, t), and return the motion looked at too."""
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
     h, before = system.first_step, None
     span = float(run.time[-1] - run.time[0])
@@ -77,7 +111,8 @@ def _agreed(system: CoupledSystem, run: Run) -> Real:
         if now is not None and before is not None:
             apart = np.abs(now - before).max(initial=0.0)
             if apart <= tolerance * np.abs(now).max(initial=0.0):
-                return now
+                plain = system.without_laws()
+                return now, [one + other for one, other in zip(plain, passed.looked)]
         if span / h > MOST_STEPS:
             raise SolveError(f"energy is not known to {tolerance:g} with {MOST_STEPS} steps")
         h, before = h / 2, now
@@ -112,6 +147,7 @@ class EnergyPassage(CoupledPassage):
         self._energy[2:, into] += self._powers(block, found, Q, (V[:-1], before[1:]))
         self._energy[2, at.start : at.stop] += self._by_blows(at, V, is_last)
         self._done += block.number
+        super()._record(block, found, known, is_last)
 
     def _stored(self, time: Real, Q: Real, V: Real) -> Real:
         """Return kinetic energy and strain."""
@@ -166,8 +202,8 @@ class EnergyPassage(CoupledPassage):
         return given
 
 
-def of_chain(run: Run) -> Balance:
+def of_chain(run: Run, moves: Moves | None = None) -> Balance:
     """Return the energies of a motion that another method told."""
     if run.coarse is not None:
         raise SceneError("energy is not told where spans begin with shapes or velocities")
-    return balance(replace(run, snapshots=np.zeros(0)))
+    return balance(run.but(snapshots=np.zeros(0)), moves)
