@@ -18,7 +18,7 @@ from ..acting import scene_laws
 from ..history import Balance
 from ..modal.energy_balance import DrivenModes
 from ..request import TOLERANCE, Run
-from ..smooth.passage import Steps
+from ..smooth.passage import Runs, Steps
 from ..smooth.system import OutputTimes
 from .steps import CoupledPassage, StepsTaken
 from .system import CoupledSystem, moving_together, tension_of
@@ -100,7 +100,8 @@ def _refuse_other_motion(exact: Real, moved: Real, run: Run) -> None:
 def _agreed(system: CoupledSystem, run: Run) -> tuple[Real, list[Real]]:
     """Halve the steps until two runs agree, (names, t), and return the motion looked at too."""
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
-    h, before = system.first_step, None
+    falls = 2.0 if system.is_sharp else 4.0
+    h, before, runs = system.first_step, None, Runs()
     span = float(run.time[-1] - run.time[0])
     while True:
         passage = EnergyPassage(system, h)
@@ -109,13 +110,13 @@ def _agreed(system: CoupledSystem, run: Run) -> tuple[Real, list[Real]]:
             raise passed.error
         now = None if passed.error is not None else passage.energies(run.time)
         if now is not None and before is not None:
-            apart = np.abs(now - before).max(initial=0.0)
-            if apart <= tolerance * np.abs(now).max(initial=0.0):
+            off = runs.off(now, before, falls).max(initial=0.0)
+            if off <= tolerance * np.abs(now).max(initial=0.0):
                 plain = system.without_laws()
                 return now, [one + other for one, other in zip(plain, passed.looked)]
         if span / h > MOST_STEPS:
             raise SolveError(f"energy is not known to {tolerance:g} with {MOST_STEPS} steps")
-        h, before = h / 2, now
+        h, before = h / system.finer, now
 
 
 class EnergyPassage(CoupledPassage):
@@ -126,14 +127,19 @@ class EnergyPassage(CoupledPassage):
         edges = self._edges()
         self._speed = system.linear(system.points, edges, 1).T
         self._edge, self._done = edges, 0
-        self._energy = np.zeros((len(NAMES), len(edges)))
+        self._energy, self._jump = np.zeros((len(NAMES), len(edges))), np.zeros(len(edges))
         self._struck()
 
     def energies(self, time: Real) -> Real:
         """Return them at some times, on straight lines between the ends of steps."""
         gone = self._energy.copy()
         gone[2:] = gone[2:].cumsum(axis=1)
-        return np.stack([np.interp(time, self._edge, one) for one in gone])
+        jump = self._jump.cumsum()  # of what moves and of what is put in
+        at = np.searchsorted(self._edge, time, side="right") - 1
+        told = [np.interp(time, self._edge, one) for one in (*gone, gone[0] - jump)]
+        told[0] = told.pop() + jump[at]
+        told[2] += jump[at]
+        return np.stack(told)
 
     def _record(self, block: Steps, found: StepsTaken, known: Real, is_last: bool) -> None:
         at = slice(self._done, self._done + block.number + 1)
@@ -145,7 +151,7 @@ class EnergyPassage(CoupledPassage):
             if at.start <= k < at.stop:
                 before[k - at.start] -= kick
         self._energy[2:, into] += self._powers(block, found, Q, (V[:-1], before[1:]))
-        self._energy[2, at.start : at.stop] += self._by_blows(at, V, is_last)
+        self._jump[at.start : at.stop] += self._by_blows(at, V, is_last)
         self._done += block.number
         super()._record(block, found, known, is_last)
 

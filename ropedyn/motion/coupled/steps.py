@@ -95,8 +95,8 @@ class CoupledPassage(LawPassage):
                 when = block.begin + made * block.h
                 error = self._failed(when, *found.error)
                 settles = found.error[1] is not None
-                return Passed(self.looked, when, done, error, settles)
-            self.reached, self.stages = block.end, done
+                return Passed(self.looked, self.reached, done, error, settles)
+            self.stages = done
             progress(done / (len(known) - 1))
         return Passed(self.looked, float(system.time[-1]), done)
 

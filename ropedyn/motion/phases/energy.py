@@ -67,8 +67,8 @@ def _component(run: Run, one: Moving) -> Real:
     for visit in PhaseWalk(one.system).visits(rest(one, 0.0), pieces(forces, run.time)):
         edges = _edges(one, visit, run.time)
         stored = _stored(one, _look(one, visit, edges))
-        if before is not None:
-            done[0] += stored[:, 0].sum() - before
+        # motion begins at rest: what is kinetic at once a blow has put in
+        done[0] += stored[0, 0] if before is None else stored[:, 0].sum() - before
         before = stored[:, -1].sum()
         nodes = (edges[:-1, None] + np.multiply.outer(np.diff(edges), (NODES + 1) / 2)).ravel()
         power = _powers(one, visit, _look(one, visit, nodes))

@@ -18,6 +18,9 @@ from .system import LawSystem, OutputTimes
 
 BLOCK = 1 << 18  # So many numbers of states are kept at a time,
 ROWS = 4096  # and how so many places within a step are seen.
+TIMES, MORE = 3.0, 12.0  # The finer of two runs is off by so many times their distance at most, or
+# by so many over what half the step divides errors by, where that is little.
+FORGETS = 4.0  # What runs before were apart counts, this much less with each half of the step.
 SNAP = 1e-9  # Times closer to the end of a step than this part of it are there.
 
 
@@ -34,16 +37,19 @@ class Steps(NamedTuple):
         return self.begin + self.h * self.number
 
     def parts(self, most: int) -> Iterable[Steps]:
-        """Yield them, at most so many at once."""
-        for first in range(0, self.number, most):
-            count = min(most, self.number - first)
-            yield Steps(self.begin + self.h * first, self.h, count)
+        """Yield them, at most so many at once, in blocks alike."""
+        blocks = -(-self.number // most)
+        for k in range(blocks):
+            first, until = (self.number * one // blocks for one in (k, k + 1))
+            yield Steps(self.begin + self.h * first, self.h, until - first)
 
 
 def steps_between(time: Real, breaks: Iterable[float], h: float) -> list[Steps]:
     """Return steps of at most h from the first time to the last, with breaks at ends of steps."""
     # where times are even, steps are so many of their intervals or parts of one: then few places
-    # within steps are looked at
+    # within steps are looked at. What is left before a break are two or three shorter ones in turn,
+    # so that runs that are compared differ there too
+    pieces = 2 + round(math.log2(float(time[-1] - time[0]) / h)) % 2
     if is_uniform(time):
         dt = float(time[-1] - time[0]) / (len(time) - 1)
         h = dt * math.floor(h / dt * (1 + SNAP)) if h >= dt else dt / math.ceil(dt / h)
@@ -57,7 +63,7 @@ def steps_between(time: Real, breaks: Iterable[float], h: float) -> list[Steps]:
         if count:
             found.append(Steps(begin, h, count))
         if left > near or not count:
-            found.append(Steps(end - left, left, 1))
+            found.append(Steps(end - left, left / pieces, pieces))
     return found
 
 
@@ -65,11 +71,27 @@ class Passed(NamedTuple):
     """What a run with steps of one length found."""
 
     looked: list[Real]  # what laws add to each look, (outputs, t)
-    reached: float  # until when [s]
+    reached: float  # until when it looked [s]
     stages: int
     error: BaseException | None = None  # what ended it early
     settles: bool = True  # whether Newton's method found the forces
     bent: Real = np.zeros(0)  # the highest degree of laws' forces in steps, relative, (laws,)
+
+
+class Runs:
+    """How far the finer of two runs is off, in turn."""
+
+    def __init__(self) -> None:
+        self.apart: Real | float = np.inf
+
+    def off(self, found: Real, before: Real, falls: float) -> Real:
+        """Return it, as found (outputs, t); half the step divides errors by `falls` at least."""
+        # where velocities turn or contact begins, two runs may agree by chance
+        last = self.apart / falls if np.isfinite(falls) else 0.0
+        now = np.maximum.accumulate(np.abs(found - before), axis=1)
+        wrong = max(TIMES, MORE / falls) * np.maximum(now, last)
+        self.apart = np.maximum(now, np.where(np.isfinite(self.apart), self.apart, 0.0) / FORGETS)
+        return np.asarray(wrong)
 
 
 class LawPassage:
@@ -80,7 +102,7 @@ class LawPassage:
         self.all_steps = steps_between(system.time, system.breaks, h)
         self.looked = [np.zeros((o.stop - o.start, len(t))) for o, t, _ in system.looks]
         self._rows: dict[tuple[float, float, int], tuple[Real, Real]] = {}
-        self.reached, self.stages = float(system.time[0]), 0  # until when [s], in so many
+        self.reached, self.stages = float(system.time[0]), 0  # seen until when [s], in so many
 
     def passed(self, progress: Callable[[float], object]) -> Passed:
         """Take all steps, or whole blocks of them until Ctrl-C."""
@@ -110,13 +132,12 @@ class LawPassage:
             bent = np.maximum(bent, highest.max(axis=0, initial=0.0))
             is_last = made == block.number and done == len(known)
             self._look(block._replace(number=made), forces[1:], motions, is_last)
-            reached = block.begin + made * block.h
+            self.stages = done * STAGES
             if made < block.number:
-                error = self._failed(reached, residual, failure)
+                error = self._failed(block.begin + made * block.h, residual, failure)
                 settles = failure is not None
-                return Passed(self.looked, reached, done * STAGES, error, settles)
+                return Passed(self.looked, self.reached, self.stages, error, settles)
             force, state = forces[-1], motions[-1]
-            self.reached, self.stages = reached, done * STAGES
             progress(done / len(known))
         bent /= np.maximum(size[2], np.finfo(float).tiny)
         return Passed(self.looked, float(system.time[-1]), done * STAGES, bent=bent)
@@ -150,9 +171,10 @@ class LawPassage:
     # --- what is looked at ----------------------------------------------------------------------
 
     def _look(self, steps: Steps, force: Real, state: Real, is_last: bool) -> None:
-        """Add what laws move at the times within some steps."""
+        """Add what laws move at the times within some steps, at the end of the last alone."""
         if steps.number == 0:
             return
+        self.reached = steps.end - (0.0 if is_last else 2 * SNAP * steps.h)
         for number, look in enumerate(self.system.looks):
             since = (look.time - steps.begin) / steps.h
             inside = (since >= -SNAP) & (since < steps.number - SNAP)

@@ -33,18 +33,15 @@ from ..request import TOLERANCE, Run
 from ..states import LARGEST, without_dashpots
 from ..undamped import losses_of
 from .laws import PointLaw, laws_on, why_not_smooth
-from .passage import LawPassage
+from .passage import LawPassage, Runs
 from .stretching import StretchedPassage
 from .system import LawQuestion, LawSystem, OutputTimes
 
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
 MOST_STEPS = 2_000_000  # A run takes so many steps at most,
 HARD = 10  # or so many halvings of steps that do not converge.
-TIMES, MORE = 3.0, 12.0  # The finer of two runs is off by so many times their distance at most, or
-# by so many over what half the step divides errors by, where that is little.
 BENDS = 8.0  # Half the step divides the highest degree of smooth forces by as much at least;
 BENT_FALLS = 2.0  # of others it divides errors by so much.
-FORGETS = 4.0  # What runs before were apart counts, this much less with each half of the step.
 NOTHING = 1e-9  # Responses smaller than this part of the largest are rounding.
 ROUNDING = 1e-12  # Of the largest value and of each radian that it turns, what rounding leaves.
 STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answer.
@@ -148,7 +145,7 @@ def agree(
     span, worst = float(system.time[-1] - system.time[0]), np.inf
     coarse: list[Real] | None = None
     last: Agreed | None = None
-    apart, bent = np.full(1, np.inf), np.zeros(0)
+    runs, bent = Runs(), np.zeros(0)
     stages = hard = 0
     if span / h > MOST_STEPS:
         raise SolveError(f"{span:g} s take {span / h:.2g} steps at least, above {MOST_STEPS}")
@@ -172,13 +169,9 @@ def agree(
         )
         if passed.error is None and coarse is not None:
             size = np.maximum(scale(looked[0]), NOTHING * scale(linear[0]))[:, None]
-            # where velocities turn or contact begins, two runs may agree by chance
             bends = (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
             falls = BENT_FALLS if bends else system.falls
-            before = apart / falls if np.isfinite(falls) else 0.0
-            now = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
-            wrong = max(TIMES, MORE / falls) * np.maximum(now, before)
-            apart = np.maximum(now, np.where(np.isfinite(apart), apart, 0.0) / FORGETS)
+            wrong = runs.off(looked[0], coarse[0], falls)
             found.step_error = wrong + rounding(looked[0], time)
             worst = float((found.step_error / size).max(initial=0.0))
             if worst <= tolerance:

@@ -49,13 +49,13 @@ class StretchedPassage(LawPassage):
                 if solved is None:
                     when = block.begin + i * block.h
                     error = self._failed(when, residual, None)
-                    return Passed(self.looked, when, done * STAGES, error, settles=False)
+                    return Passed(self.looked, self.reached, self.stages, error, settles=False)
                 forces[i] = force = solved
                 size = max(size, float(np.abs(force).max()))
                 state = step.carry(state, force)
                 done += 1
             self._look(block, forces, states, done == len(known))
-            self.reached, self.stages = block.end, done * STAGES
+            self.stages = done * STAGES
             progress(done / len(known))
         return Passed(self.looked, float(self.system.time[-1]), done * STAGES)
 
