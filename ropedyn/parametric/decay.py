@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from ..base.array import Real
+from ..base.array import Complex, Real
 from ..motion.modal_system import ModalSystem
 from .hill import Hill, Numbers, order_of
 from .krein import TAIL, Regions, Unstable
@@ -25,7 +25,9 @@ EPS = float(np.finfo(float).eps)
 DEGREE = 32
 RESOLVED = 1e-8  # The last terms of a polynomial are smaller than this part of the largest.
 NOISE = 1e-2  # Where the last terms are this small they are either smooth or rounding.
+APART = 4.0  # Roots are told apart that are as many times further from each other than off.
 LEAST = 1e-7  # A polynomial is asked for in no smaller part of the period.
+ROUNDING = 1e-14  # So is what rounding leaves of it.
 BESIDE = 0.1  # A root so far beside the real axis, in parts of half a piece, is looked at too.
 
 
@@ -67,15 +69,31 @@ def _places(motion: Propagator) -> tuple[Real, bool]:
         # where halving a piece gains nothing rounding is what is left
         rough = ~smooth & ((half < LEAST * middle) | (tail < NOISE) & (tail > before / 4))
         resolved &= not rough.any()
-        for piece in np.flatnonzero(smooth | rough):
-            root = np.polynomial.chebyshev.chebroots(coefficient[piece])
-            near = root.real[(np.abs(root.imag) < BESIDE) & (np.abs(root.real) < 1 + BESIDE)]
-            place.append(middle[piece] + half[piece] * near)
         rest = ~smooth & ~rough
+        for piece in np.flatnonzero(~rest):
+            root = np.polynomial.chebyshev.chebroots(coefficient[piece])
+            near = root[(np.abs(root.imag) < BESIDE) & (np.abs(root.real) < 1 + BESIDE)]
+            small = half[piece] < LEAST * middle[piece]
+            if rough[piece] or small or _are_apart(coefficient[piece], near):
+                place.append(middle[piece] + half[piece] * near.real)
+            else:  # a smaller piece knows them better
+                rest[piece] = True
         begin = np.concatenate([begin[rest], middle[rest]])
         end = np.concatenate([middle[rest], end[rest]])
         before = np.tile(tail[rest], 2)
     return np.concatenate(place), resolved
+
+
+def _are_apart(coefficient: Real, root: Complex) -> bool:
+    """Whether roots of a polynomial are further from each other than each is off."""
+    chebyshev, size = np.polynomial.chebyshev, np.abs(coefficient)
+    wrong = max(size[-3:].max(), ROUNDING * size.max())
+    slope = np.abs(chebyshev.chebval(root, chebyshev.chebder(coefficient)))
+    bend = np.abs(chebyshev.chebval(root, chebyshev.chebder(coefficient, 2))) / 2
+    # slope e + bend e^2 = wrong
+    off = 2 * wrong / (slope + np.sqrt(slope**2 + 4 * bend * wrong) + np.finfo(float).tiny)
+    apart = np.abs(root[:, None] - root) + np.diag(np.full(len(root), np.inf))
+    return bool((apart > APART * (off[:, None] + off)).all())
 
 
 def _product(motion: Propagator, period: Real) -> Real:

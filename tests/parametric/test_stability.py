@@ -123,6 +123,18 @@ def test_map_is_as_the_multipliers_are():
     assert stability.stable.any()
 
 
+def test_layers_that_end_where_pieces_do_are_one_place():
+    """A span between both, but for rounding, had no length, and the scene was refused."""
+    rope = rd.Rope(1.0, 0.1, bending_stiffness=1.6)
+
+    def growth(at):
+        parts = [rd.Dashpot(at, 0.027), rd.PointMass(0.64, 0.037)]
+        scene = rd.Scene(rope, tension=1000.0, ends=("pinned", "clamped"), parts=parts)
+        return scene.compile().stability_map([34.0, 71.0], [250.0], modes=3).growth
+
+    assert growth(0.21) == pytest.approx(growth(0.21 + 1e-7), rel=1e-5)
+
+
 def test_undamped_rope_without_pulsation_is_stable():
     stability = BEAM.compile().stability_map(np.linspace(50.0, 250.0, 41), [0.0], modes=4)
     assert stability.stable.all()

@@ -5,6 +5,7 @@ import pytest
 from conftest import slow
 from scipy.special import mathieu_a, mathieu_b
 
+import ropedyn as rd
 from ropedyn.motion.modal_system import ModalSystem
 from ropedyn.parametric import decay, hill, krein
 from ropedyn.parametric.monodromy import Propagator, exponent
@@ -128,6 +129,27 @@ def test_unlike_damping_opens_a_combination():
     width = np.pi * np.array([np.ptp(damped.frequency), np.ptp(still.frequency)])
     assert width[0] == pytest.approx(expected, rel=0.02)
     assert width[0] > 1.5 * width[1]
+
+
+@pytest.mark.parametrize(
+    ("bending", "dashpot", "modes", "amplitude", "between", "gap"),
+    [
+        (0.85, rd.Dashpot(0.15, 0.086), 3, 290.0, (39.0, 83.0), 51.87),
+        (0.44, rd.Dashpot(0.12, 0.034), 4, 380.0, (31.0, 59.0), 51.496),
+    ],
+    ids=["of three modes", "of four"],
+)
+def test_a_gap_between_tongues_is_seen_from_afar(bending, dashpot, modes, amplitude, between, gap):
+    """Two edges 1e-3 of their frequency apart were one double root: proved, without the gap."""
+    rope = rd.Rope(1.0, 0.1, bending_stiffness=bending)
+    scene = rd.Scene(rope, tension=1000.0, ends=("pinned", "clamped"), parts=[dashpot])
+    grid = np.sort([*between, gap, gap - 0.05, gap + 0.05])
+    found = scene.compile().stability_map(grid, [0.0, amplitude], modes=modes)
+    edges = found.boundary(amplitude)
+    assert edges.proved
+    inside = np.searchsorted(edges.frequency, grid) % 2 == 1
+    np.testing.assert_array_equal(inside, ~found.stable[1])
+    assert found.stable[1, 2]
 
 
 def test_growth_lost_in_rounding_is_not_proved():
