@@ -24,16 +24,22 @@ def duffing(**change):
     return rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, **how).compile(elements=2)
 
 
-def fold_by_shooting(omega, x, v):
+def hardens(x):
+    """Return the spring's force and its slope."""
+    return CUBE * x**3, 3 * CUBE * x**2
+
+
+def fold_by_shooting(omega, x, v, law=hardens):
     """Return the frequency near a guess where a multiplier of a closed orbit is 1."""
 
     def ends(unknown):
         x, v, omega = unknown * scale
 
         def rate(t, y):
-            a = FORCE * np.cos(omega * t) - SOFT * y[0] - CUBE * y[0] ** 3
+            force, stiff = law(y[0])
+            a = FORCE * np.cos(omega * t) - SOFT * y[0] - force
             Y = y[2:].reshape(2, 2)
-            stiff = (SOFT + 3 * CUBE * y[0] ** 2) / MASS
+            stiff = (SOFT + stiff) / MASS
             slope = np.array([Y[1], -stiff * Y[0] - DECAY * Y[1]])
             return np.concatenate([[y[1], a / MASS - DECAY * y[1]], slope.ravel()])
 
@@ -68,6 +74,23 @@ def test_folds_are_where_a_multiplier_of_the_orbit_is_1(claim):
         worst = max(worst, abs(f / exact - 1))
         assert abs(f - exact) <= branches.fold_error[k] + 1e-9 * f
     claim(worst)
+
+
+@pytest.mark.parametrize(("stiffness", "gap"), [(700, 0.005), (700, 0.01), (3000, 0.005)])
+def test_folds_beside_a_stop_are_off_by_no_more_than_is_said(stiffness, gap):
+    """A fold is looked for again with more harmonics: it was on the branch beside, unmoved."""
+
+    def presses(x):
+        return stiffness * max(x - gap, 0.0), stiffness * (x > gap)
+
+    options = {"drive": ("z", 0.5), "amplitude": FORCE, "branches": True}
+    model = duffing(parts=[rd.Stop(0.5, stiffness, gap=gap)])
+    branches = model.stepped_sine([10.0, 40.0], **options)
+    assert len(branches) == 3
+    for k, f in enumerate(branches.folds):
+        at, omega = FORCE * branches[k].value[0, -1], 2 * np.pi * f
+        exact = fold_by_shooting(omega, at.real, -omega * at.imag, presses)
+        assert abs(f - exact) <= branches.fold_error[k] + 1e-9 * f
 
 
 def test_three_motions_between_folds_and_the_middle_one_is_unstable():

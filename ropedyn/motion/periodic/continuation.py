@@ -23,6 +23,7 @@ ASTRAY, FAR = 0.5, 0.25  # A step returns to the curve from this part of its len
 NEWTON = 10  # Steps of Newton's method at most.
 ENOUGH = 1e-7  # Its last one, relative: what it leaves is about the square of that.
 ROUGHLY = 3e-3  # Its last one of what is only on the way, over the length of the step.
+BESIDE = (1e-4, 1e-3, 1e-2, 1e-1)  # So far to both sides a fold is looked for again.
 PLENTY = 3  # A step that takes more is not followed by a longer one.
 
 Linearise = Callable[[Real, Any], tuple[Real, Real, Real]]
@@ -161,6 +162,16 @@ class Branch:
             return None
         up(float(root))
         return found[float(root)]
+
+    def fold_near(self, place: Place) -> Place | None:
+        """Return where p turns beside a place, None where it does not."""
+        for step in BESIDE:
+            both = [self.reached(place, way) for way in (-step, step)]
+            if both[0] is None or both[1] is None:
+                return None
+            if both[0][0].up * both[1][0].up < 0:
+                return self.fold(both[0][0], both[1][0])
+        return None
 
     def _size(self, x: Real) -> float:
         return max(float(np.linalg.norm(x)), self.small)

@@ -118,9 +118,12 @@ def _finer(
         if one.kind != "asked":
             # across the branch: its place may move along it
             reached = branch.reached(places[k], 0.0)
-            if reached is None:
+            place = reached[0] if reached is not None else None
+            if place is not None and one.kind == "fold":
+                place = branch.fold_near(place)
+            if place is None:
                 return None
-            places[k] = reached[0]
+            places[k] = place
     finer = [one._replace(balance=balance, place=place) for one, place in zip(states, places)]
     pushes, slopes = _per_amplitude(balance, _forces(finer)), _slopes(balance, finer)
     found = []
@@ -134,8 +137,9 @@ def _finer(
         back = off / one.place.up if one.kind == "step" and off else 0.0
         across, moved = push - before.push, abs(off) / (2 * np.pi)
         change = across - slope * float(np.clip(back, -most, most))
+        if one.kind != "asked":
+            change, moved = TIMES * change, TIMES * moved
         if one.kind == "step":  # forces with corners fall by chance
-            change *= TIMES
             chance = np.abs(before.change) > FALLS * np.abs(change)
             change = np.where(chance, before.change / FALLS, change)
         own = one._replace(push=push, change=change, across=across, moved=moved)
