@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -31,6 +31,8 @@ from .modal.expansion import refuse_losses
 from .modal.superposition import apart, estimated, fastest, superpose
 from .moved import Moved, against_spans
 from .request import TOLERANCE, Run
+
+Told = TypeVar("Told")
 
 MORE, MOST = 4, 1600  # So many times more modes are summed next, and so many at most.
 LOOSER = (TOLERANCE, 0.1, 2.0)  # That the motion of continuous spans keeps to, if it can.
@@ -247,14 +249,15 @@ def snapshots_of(run: Run) -> tuple[Real, Real]:
 
 def mesh_error_of(run: Run, value: Real) -> Real:
     """Return the distance to the motion of continuous spans and the error of that, as value."""
-    return against_spans(replace(run, modes=None, method="auto"), value, _loosely)
+    solve = partial(loosely, within_tolerance)
+    return against_spans(replace(run, modes=None, method="auto"), value, solve)
 
 
-def _loosely(run: Run) -> Moved:
+def loosely(solve: Callable[[Run], Told], run: Run) -> Told:
     """Return the motion within the first of some tolerances that it keeps to."""
     for tolerance in LOOSER:
         try:
-            return within_tolerance(replace(run, tolerance=tolerance))
+            return solve(replace(run, tolerance=tolerance))
         except SolveError as refusal:
             refused = refusal
     raise refused

@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import _core
 from ..base.array import Index, Real
+from ..base.check import NEAR
 from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import ATTACHED, Chain, roles
@@ -218,6 +219,9 @@ def _at_gauss_points(
         equal = np.linspace(begin, end, pieces_of(span, highest) + 1)
         layer = _layers(span, end - begin)
         edge = np.unique(np.concatenate([equal, begin + layer, end - layer]))
+        least = NEAR * (end - begin)  # of layers that end where pieces do, but for rounding
+        apart = (np.diff(edge)[:-1] > least) & (end - edge[1:-1] > least)
+        edge = edge[np.concatenate([[True], apart, [True]])]
         half = np.diff(edge)[:, None] / 2
         x += [((edge[:-1] + edge[1:])[:, None] / 2 + half * place).ravel(), np.array([end])]
         weight += [(half * share).ravel(), np.zeros(1)]

@@ -22,6 +22,7 @@ from ..base.array import Real
 from ..base.computed import changed
 from ..base.errors import SceneError
 from ..base.unit import OF_FORCE
+from ..chain.chain import CHANNELS
 from ..chain.compiled import Compiled
 from ..chain.port import moving
 from ..scene.end import end_of
@@ -31,7 +32,7 @@ from ..scene.scene import Scene
 from ..scene.tension import Tension
 from .acting import scene_laws
 from .history import Balance, History
-from .linear import solve_linear
+from .linear import loosely, solve_linear
 from .moved import against_spans
 from .periodic.asked import SteppedSine
 from .request import Run
@@ -160,7 +161,7 @@ def _with_twist(run: Run, history: History) -> History:
 def _mesh_error(run: Run, history: History, own: list[int], twist: Real) -> Real:
     """Return that of a motion and of the twist beside it."""
     missed = history.mesh_error.copy()
-    missed[own] += against_spans(run, twist, _twist)
+    missed[own] += against_spans(run, twist, partial(loosely, _twist))
     return missed
 
 
@@ -186,6 +187,9 @@ def _share(run: Run) -> float:
 def _twist(run: Run) -> History:
     """Return the motion of twist alone, under the moments of the tension on ends that turn."""
     tension, chain = _pulsating(run), run.model.chain.only(("alpha",))
+    at, own = CHANNELS["alpha"], np.zeros_like(chain.flexibility)
+    own[:, at, at] = chain.flexibility[:, at, at]
+    chain = chain._replace(flexibility=own)  # nothing couples it: sweeps take closed forms
     alone = replace(
         run.model,
         coordinates=("alpha",),

@@ -239,6 +239,17 @@ def test_a_sag_that_would_pulsate_with_the_tension_is_refused_by_name():
     assert np.isfinite(flat.transient(TIME, force=rd.Step(1.0), **asked).value).all()
 
 
+def test_mesh_error_of_torque_without_damping_is_that_of_fronts():
+    """Spans ring in steps of the torque for ever: known to 0.1, not to 1e-3, which is enough."""
+    model = scene(gamma=0.0).compile(elements=3)
+    time = np.linspace(0.0, 0.05, 61)
+    asked = {"response": [("alpha", LENGTH), ("M_alpha", LENGTH / 3)]}
+    missed = model.transient(time, **asked).mesh_error.max(axis=1)
+    alone = model.transient(time, response=("alpha", LENGTH)).mesh_error.max()
+    assert np.isfinite(missed).all()
+    assert missed[0] == pytest.approx(alone, rel=0.1)
+
+
 def test_energy_is_refused_where_the_tension_turns_an_end():
     """It said that of the drives alone, while the twist by the tension had more."""
     middle = ("z", LENGTH / 2)
