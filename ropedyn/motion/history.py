@@ -89,13 +89,13 @@ class History(Answer):
         A tolerance is kept for the chain as it is: coarse elements are wrong by far more.
     energy : dict of ndarray, shape (t,)
         "kinetic" and "strain", what the forces put in since t = 0 ("input") and what dampers took
-        ("dissipated") [J]: kinetic + strain - input + dissipated stays what it was at the first
-        time, but for what numerical damping takes. The modal method integrates input and dissipated
+        ("dissipated") [J]: kinetic + strain - input + dissipated stays what it was before the first
+        time; blows at it are in the input. The modal method integrates input and dissipated
         at 4 values for each rad of the modes and forces, 16 at least between two times: 2 s at
         10 kHz of 126 modes take 10 s. Work of a tension that pulsates is input; of an
         end that jumps, what stays of it. Where stops or a `NodeForce` act, what they took since
-        then is "laws" and belongs to the sum. What a pulsating tension turns in a laid rope is not
-        in them.
+        then is "laws" and belongs to the sum. Refused where a pulsating tension turns an end of a
+        laid rope, and between nodes where the tension varies.
     snapshot_time : ndarray, shape (s,)
         When the whole rope was looked at [s].
     x : ndarray, shape (nodes,)
