@@ -5,7 +5,8 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import cast
 
-from ..base.errors import SolveError
+from ..base.check import NEAR
+from ..base.errors import SceneError, SolveError
 from .history import History
 from .linear import resists_beside_ratios, solve_linear
 from .phases.components import why_not_events
@@ -27,8 +28,22 @@ def _by_events(run: Run) -> History:
         raise
 
 
+def _refuse_last_blow(run: Run) -> None:
+    """Refuse a blow after which no law is asked any more."""
+    last = float(run.time[-1])
+    near = last - NEAR * (last - float(run.time[0]))
+    for k, force in enumerate(run.forces):
+        if any(near <= when <= last for when, _ in force.blows):
+            raise SceneError(
+                f"force[{k}] must not be a blow at the last time where motion is not linear, got "
+                f"one at {last!r} s: a later time tells what it does"
+            )
+
+
 def follow_motion(run: Run) -> History:
     """Return the motion by the method that was asked for; see `Model.transient`."""
+    if not run.is_linear:
+        _refuse_last_blow(run)
     if run.method == EVENTS:
         return solve_events(run)
     if run.is_linear and not resists_beside_ratios(run):

@@ -131,3 +131,46 @@ def test_a_blow_at_the_first_time_is_put_in_by_every_method(part):
         energy = model.transient(time, **asked).energy
         assert energy["input"] == pytest.approx(0.02**2 / (2 * MASS), rel=1e-12)
         assert energy["kinetic"][0] == pytest.approx(0.02**2 / (2 * MASS), rel=1e-12)
+
+
+@pytest.mark.parametrize("quantity", ["displacement", "acceleration"])
+@pytest.mark.parametrize(
+    "parts", [(), (rd.Dashpot(0.25, 1.0, exponent=0.0),), (rd.NodeForce(0.5, hardening),)], ids=len
+)
+def test_a_break_that_is_nearly_at_a_time_leaves_no_time_unseen(parts, quantity):
+    """A time between two blocks of steps, by rounding, had no part of laws or pulsation: half."""
+    tension = TENSION if parts and isinstance(parts[0], rd.NodeForce) else PULSATING
+    time = 0.3 + np.linspace(0.0, 0.1, 301)
+    drives, sine = [MIDDLE, ("z", 0.25)], rd.Sine(20.0, 30.0)
+
+    def moved(at):
+        force = [sine, rd.Step(1e-9, time=at)]
+        asked = {"response": MIDDLE, "quantity": quantity, "tolerance": 1e-2}
+        return beads(tension, *parts).transient(time, drive=drives, force=force, **asked).value
+
+    off = float(time[215] + 0.4 * (time[1] - time[0]))
+    for at in (round(float(time[215]), 10), round(float(time[230]), 12)):
+        apart = np.abs(moved(at) - moved(off)).max()
+        assert apart < 2e-2 * np.abs(moved(off)).max()
+
+
+def test_a_blow_at_the_last_time_is_refused_where_laws_follow_it():
+    time = np.linspace(0.0, 0.03, 151)
+    asked = {"drive": MIDDLE, "force": rd.Impulse(0.05, time=float(time[-1])), "response": MIDDLE}
+    for model in (beads(), beads(TENSION, rd.Stop(0.25, 1e4, gap=1.0))):
+        with pytest.raises(rd.SceneError, match=r"force\[0\] must not be a blow at the last time"):
+            model.transient(time, **asked)
+    asked = {"drive": [MIDDLE, MIDDLE], "force": [rd.Sine(1.0, 30.0), asked["force"]]}
+    linear = beads(TENSION, rd.Dashpot(0.25, 1.0))
+    masses = [("z", at) for at in (0.25, 0.5, 0.75)]
+    speed = linear.transient(time, response=masses, quantity="velocity", **asked).value[:, -1]
+    energy = linear.transient(time, response=MIDDLE, **asked).energy
+    assert energy["kinetic"][-1] == pytest.approx(MASS * (speed**2).sum() / 2, rel=1e-3)  # 3e-5
+
+
+def test_energy_of_a_blow_at_a_first_time_that_is_not_0():
+    time = np.linspace(0.013, 0.043, 151)
+    asked = {"drive": ("z", 0.75), "force": rd.Impulse(0.06, time=0.013), "response": MIDDLE}
+    start = {("z", 0.25): -0.058}
+    energy = beads(TENSION, rd.Stop(0.75, 2684.0)).transient(time, velocity=start, **asked).energy
+    assert energy["input"][0] == pytest.approx((0.06**2 + 0.058**2) / (2 * MASS), rel=1e-9)

@@ -103,7 +103,7 @@ class CoupledPassage(LawPassage):
     def _edges(self) -> Real:
         """Return when steps begin, and the last one ends."""
         begins = [s.begin + s.h * np.arange(s.number) for s in self.all_steps]
-        return np.concatenate([*begins, [self.all_steps[-1].end]])
+        return np.concatenate([*begins, self.system.time[-1:]])
 
     def _record(self, block: Steps, found: StepsTaken, known: Real, is_last: bool) -> None:
         """Keep what is asked for of some steps."""

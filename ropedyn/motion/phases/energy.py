@@ -98,7 +98,7 @@ def _edges(one: Moving, visit: Visit, time: Real) -> Real:
     parts = np.maximum(1, np.ceil(np.diff(edges) * fast / TURN)).astype(int)
     step = np.repeat(np.diff(edges) / parts, parts)
     first = np.repeat(edges[:-1], parts)
-    number = np.concatenate([np.arange(n) for n in parts])
+    number = np.arange(len(step)) - np.repeat(np.cumsum(parts) - parts, parts)
     return np.append(first + number * step, edges[-1])
 
 

@@ -101,6 +101,7 @@ class LawPassage:
         self.system = system
         self.all_steps = steps_between(system.time, system.breaks, h)
         self.looked = [np.zeros((o.stop - o.start, len(t))) for o, t, _ in system.looks]
+        self._next = [0] * len(self.looked)  # which time of each look comes next
         self._rows: dict[tuple[float, float, int], tuple[Real, Real]] = {}
         self.reached, self.stages = float(system.time[0]), 0  # seen until when [s], in so many
 
@@ -176,13 +177,14 @@ class LawPassage:
             return
         self.reached = steps.end - (0.0 if is_last else 2 * SNAP * steps.h)
         for number, look in enumerate(self.system.looks):
-            since = (look.time - steps.begin) / steps.h
-            inside = (since >= -SNAP) & (since < steps.number - SNAP)
-            if is_last:
-                inside |= since >= steps.number - SNAP
-            at = np.flatnonzero(inside)
-            step = np.minimum(np.floor(since[at] + SNAP).astype(np.intp), steps.number - 1)
-            theta = np.round(np.clip(since[at] - step, 0.0, 1.0), 10)
+            # whatever rounding makes of ends and begins, each time is seen once
+            until = steps.begin + steps.h * (steps.number - SNAP)
+            stop = len(look.time) if is_last else int(np.searchsorted(look.time, until))
+            at = np.arange(self._next[number], max(stop, self._next[number]))
+            self._next[number] += len(at)
+            since = (look.time[at] - steps.begin) / steps.h
+            step = np.clip(np.floor(since + SNAP).astype(np.intp), 0, steps.number - 1)
+            theta = np.round(np.clip(since - step, 0.0, 1.0), 10)
             for one in np.unique(theta).tolist():
                 some = theta == one
                 own, forced = self._row(number, steps.h, one)
