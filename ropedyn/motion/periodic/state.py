@@ -138,7 +138,7 @@ def _finer(
         across, moved = push - before.push, abs(off) / (2 * np.pi)
         change = across - slope * float(np.clip(back, -most, most))
         if one.kind != "asked":
-            change, moved = TIMES * change, TIMES * moved
+            change, moved = TIMES * change, max(TIMES * moved, before.moved / FALLS)
         if one.kind == "step":  # forces with corners fall by chance
             chance = np.abs(before.change) > FALLS * np.abs(change)
             change = np.where(chance, before.change / FALLS, change)
