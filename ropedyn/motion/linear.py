@@ -61,11 +61,7 @@ def solve_linear(run: Run) -> History:
 
 def _balance(run: Run) -> Balance:
     """Return the energies, of modes where damping does not couple them."""
-    return balance(run, fastest(run)) if tells_energy(run) else of_chain(run, _values)
-
-
-def _values(run: Run) -> Real:
-    return within_tolerance(run).value
+    return balance(run, fastest(run)) if tells_energy(run) else of_chain(run, within_tolerance)
 
 
 def within_tolerance(run: Run) -> Moved:

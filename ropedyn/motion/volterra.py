@@ -39,6 +39,7 @@ from .modal.expansion import refuse_losses
 from .moved import Moved, against_spans
 from .request import TOLERANCE, Run
 from .smooth.laws import LawFailure, SmoothLaw
+from .smooth.passage import Runs
 from .smooth.smooth import scale
 
 FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, of a second run at least and at most, or
@@ -47,7 +48,6 @@ SHARPER = 0.05  # Linear motion is known to this part of the tolerance, if it ca
 SHAPED = 0.25  # from shapes and velocities to this.
 TIMES = 2.0  # A run is off by so many times its distance to one with steps twice as long, or what
 FALLS = 2.0  # that run was off over this.
-FORGETS = 4.0  # What runs before were apart counts, this much less with each half of the step.
 BLOCK = 2048  # So many steps are taken at a time.
 STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answer.
 NONE = np.zeros(0)
@@ -194,13 +194,9 @@ def integrate(run: Run) -> History:
         cost=Cost("volterra", elements, moved.modes, stepped.count),
         error=moved.error,
         mesh_error=partial(against_spans, kept, moved.value, integrate),
-        balance=partial(of_chain, kept, _values),
+        balance=partial(of_chain, kept, integrate),
         stopped=ended_by(stopped),
     )
-
-
-def _values(run: Run) -> Real:
-    return integrate(run).value
 
 
 def _ended(run: Run, ended: Ended) -> History:
@@ -223,7 +219,7 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
     """Halve the steps until two runs agree within the tolerance, or until Ctrl-C."""
     count, coarse = _first(run), None
     most_steps = max(MOST_STEPS, RUNS * count)
-    apart: Real | float = np.inf
+    runs = Runs()
     laws = CoreActing.of(run.model)
     while True:
         more = _finer(run, laws, count)
@@ -237,23 +233,20 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
                 return stepped, found._replace(error=np.full(found.value.shape, np.inf)), error
             if not isinstance(error, Unsettled) or more > most_steps:
                 raise
-            count, apart, coarse = more, np.inf, None
+            count, runs, coarse = more, Runs(), None
             continue
         if coarse is not None:
             before = coarse[1]
-            now = np.maximum.accumulate(np.abs(found.value - before.value), axis=1)
-            # where velocities turn, two runs may agree by chance
-            both = np.maximum(now, apart / FALLS)
+            both = runs.apart(found.value, before.value, FALLS)
             known = found._replace(error=found.error + TIMES * both)
             most = tolerance * scale(found.value)[:, None]
             if (known.error <= most).all():
                 return stepped, known, None
             # shorter steps do not help where linear motion is not known
             if more > most_steps or (np.minimum(found.error, before.error) > most).any():
-                seen = np.where(np.isfinite(both), both, now)
+                seen = np.where(np.isfinite(both), both, runs.kept)
                 known = found._replace(error=found.error + TIMES * seen)
                 raise _unknown(run, tolerance, count, known)
-            apart = np.maximum(now, np.where(np.isfinite(apart), apart / FORGETS, 0.0))
         count, coarse = more, (stepped, found)
 
 

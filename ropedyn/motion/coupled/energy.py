@@ -15,10 +15,11 @@ from ...base.errors import SceneError, SolveError
 from ...chain.port import Point, local, locate, moving
 from ...eigen.damped.rates import Rates, elastic
 from ..acting import scene_laws
-from ..history import Balance
+from ..history import Balance, History
 from ..modal.energy_balance import DrivenModes
+from ..moved import Moved
 from ..request import TOLERANCE, Run
-from ..smooth.passage import Runs, Steps
+from ..smooth.passage import Runs, Steps, reach
 from ..smooth.system import OutputTimes
 from .steps import CoupledPassage, StepsTaken
 from .system import CoupledSystem, moving_together, tension_of
@@ -28,11 +29,11 @@ MOST_STEPS = 4_000_000
 FELT = 4.0  # Energies are off by so many times what motion is, relative: 0.1 to 1.6 measured.
 ROUNDING = 1e-12  # Energies of less than this part of the largest are not told.
 
-Moves = Callable[[Run], Real]
+Solve = Callable[[Run], History | Moved]
 
 
-def balance(run: Run, moves: Moves | None = None) -> Balance:
-    """Return the energies at the times of a run on a chain; `moves` tells motion exactly."""
+def balance(run: Run, solve: Solve | None = None) -> Balance:
+    """Return the energies at the times of a run on a chain; `solve` tells motion exactly."""
     total = np.zeros((len(NAMES), len(run.time)))
     for component in run.model.components:
         total[:4] += _inside_elements(run, component)
@@ -40,13 +41,13 @@ def balance(run: Run, moves: Moves | None = None) -> Balance:
     calls = any(one.law.kind == "call" for one in laws)
     for component in moving_together(run.model):
         if calls or any(moving(place) in component for place in run.places):
-            places = [] if moves is None else _lagging(run, component)
+            places = [] if solve is None else _lagging(run, component)
             looks = [OutputTimes(slice(0, len(places)), run.time, 0)] if places else []
             energies, moved = _agreed(CoupledSystem.coupled(run, component, places, looks), run)
             total += energies
-            if moves is not None and places:
-                exact = moves(run.but(responses=tuple(places), order=0))
-                _refuse_other_motion(exact, moved[0], run)
+            if solve is not None and places:
+                exact = solve(run.but(responses=tuple(places), order=0))
+                _refuse_other_motion(exact.value, moved[0], run)
     energy = dict(zip(NAMES, total))
     if all(one.law.kind == "power" for one in laws):
         del energy["laws"]
@@ -110,7 +111,7 @@ def _agreed(system: CoupledSystem, run: Run) -> tuple[Real, list[Real]]:
             raise passed.error
         now = None if passed.error is not None else passage.energies(run.time)
         if now is not None and before is not None:
-            off = runs.off(now, before, falls).max(initial=0.0)
+            off = reach(falls) * runs.apart(now, before, falls).max(initial=0.0)
             if off <= tolerance * np.abs(now).max(initial=0.0):
                 plain = system.without_laws()
                 return now, [one + other for one, other in zip(plain, passed.looked)]
@@ -208,8 +209,8 @@ class EnergyPassage(CoupledPassage):
         return given
 
 
-def of_chain(run: Run, moves: Moves | None = None) -> Balance:
+def of_chain(run: Run, solve: Solve | None = None) -> Balance:
     """Return the energies of a motion that another method told."""
     if run.coarse is not None:
         raise SceneError("energy is not told where spans begin with shapes or velocities")
-    return balance(run.but(snapshots=np.zeros(0)), moves)
+    return balance(run.but(snapshots=np.zeros(0)), solve)

@@ -79,19 +79,23 @@ class Passed(NamedTuple):
 
 
 class Runs:
-    """How far the finer of two runs is off, in turn."""
+    """How far two runs are apart, in turn."""
 
     def __init__(self) -> None:
-        self.apart: Real | float = np.inf
+        self.kept: Real | float = np.inf
 
-    def off(self, found: Real, before: Real, falls: float) -> Real:
+    def apart(self, found: Real, before: Real, falls: float) -> Real:
         """Return it, as found (outputs, t); half the step divides errors by `falls` at least."""
         # where velocities turn or contact begins, two runs may agree by chance
-        last = self.apart / falls if np.isfinite(falls) else 0.0
+        last = self.kept / falls if np.isfinite(falls) else 0.0
         now = np.maximum.accumulate(np.abs(found - before), axis=1)
-        wrong = max(TIMES, MORE / falls) * np.maximum(now, last)
-        self.apart = np.maximum(now, np.where(np.isfinite(self.apart), self.apart, 0.0) / FORGETS)
-        return np.asarray(wrong)
+        self.kept = np.maximum(now, np.where(np.isfinite(self.kept), self.kept, 0.0) / FORGETS)
+        return np.maximum(now, last)
+
+
+def reach(falls: float) -> float:
+    """Return by how many times their distance the finer of two runs is off at most."""
+    return max(TIMES, MORE / falls)
 
 
 class LawPassage:

@@ -33,7 +33,7 @@ from ..request import TOLERANCE, Run
 from ..states import LARGEST, without_dashpots
 from ..undamped import losses_of
 from .laws import PointLaw, laws_on, why_not_smooth
-from .passage import LawPassage, Runs
+from .passage import LawPassage, Runs, reach
 from .stretching import StretchedPassage
 from .system import LawQuestion, LawSystem, OutputTimes
 
@@ -171,7 +171,7 @@ def agree(
             size = np.maximum(scale(looked[0]), NOTHING * scale(linear[0]))[:, None]
             bends = (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
             falls = BENT_FALLS if bends else system.falls
-            wrong = runs.off(looked[0], coarse[0], falls)
+            wrong = reach(falls) * runs.apart(looked[0], coarse[0], falls)
             found.step_error = wrong + rounding(looked[0], time)
             worst = float((found.step_error / size).max(initial=0.0))
             if worst <= tolerance:
