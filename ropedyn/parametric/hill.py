@@ -30,8 +30,8 @@ MORE = 2  # and this many times as many where that was not enough.
 OUTER = 1e-9  # The two outer harmonics on each side hold less than this part of a motion.
 INVERSE = 8  # So many steps of inverse iteration lead to two bands.
 BESIDE = 1 + 1e-6  # Inverse iteration so far beside a band leaves the other one what it is.
-FINE = 1e-3  # A step is so short beside the phase in which a band bends.
-STEPS = 6  # So many lead to where two bands nearly meet.
+STEPS = 6  # So many lead to where two bands nearly meet,
+BENT = 30  # each of so many among the bands that lie together.
 SYMMETRIC = 1e-9  # Bands are flat at phases 0 and pi.
 MOVES = 1e-8  # Where a band is flat it lies so close to where it was looked for, in parts of it.
 SETTLED = 1e-14  # Phases are known so well, in turns.
@@ -182,37 +182,80 @@ class Flat(NamedTuple):
     order: int
 
 
-class _Pair(NamedTuple):
-    """The two bands next to a period at a phase."""
+class _Bands(NamedTuple):
+    """The bands next to a period at a phase, as many as may lie there together."""
 
     rate: Numbers  # (h,) of the harmonics [1/s]
-    motion: Real  # (h k, 2)
-    level: Real  # (2,) Omega^2 beside that of the period, of the upper band first
-    slope: Real  # (2, 2) -d Omega^2/d nu
+    motion: Real  # (h k, m)
+    level: Real  # (m,) Omega^2 beside that of the period, the highest first
+    slope: Real  # (m, m) -d Omega^2/d nu
+
+    @property
+    def nearest(self) -> int:
+        return int(np.abs(self.level).argmin())
+
+    def flat(self, number: int, beside: int | None = None) -> tuple[float, float] | None:
+        """Return where a band is flat next to the phase: its level, and how far away.
+
+        It bends at the one that is given, else at the one that bends it most.
+        """
+        x = 0.0
+        for _ in range(BENT):
+            level, mixed = np.linalg.eigh(np.diag(self.level) - x * self.slope)
+            level, mixed = level[::-1], mixed[:, ::-1]
+            slope = mixed.T @ self.slope @ mixed
+            other = _bending(level, slope, number) if beside is None else beside
+            step = _to_flat(level, slope, number, other)
+            if step is None:
+                return None
+            x += step
+            if abs(step) <= SETTLED:
+                break
+        return float(level[number]), x
 
 
-def _pair(hill: Hill, square: float, nu: float) -> _Pair:
+def _bands(hill: Hill, square: float, nu: float) -> _Bands:
     """Return the bands next to Omega^2 at a phase in turns."""
     from scipy.linalg import eigh
 
     k = len(hill.system.eigenvalue)
     rate = 1j * math.sqrt(square) * (hill.harmonic + nu)
     turning = np.repeat(hill.harmonic + nu, k)[:, None]
-    basis = np.random.default_rng(0).normal(size=(len(turning), 2))
+    basis = np.random.default_rng(0).normal(size=(len(turning), 2 * k))
     for _ in range(INVERSE):
         basis = np.linalg.qr(hill.solve(BESIDE * rate, turning**2 * basis))[0]
     level, mixed = eigh(basis.T @ hill.times(rate, basis), basis.T @ (turning**2 * basis))
     motion = (basis @ mixed)[:, ::-1]
     slope = 2 * square * (motion.T @ (turning * motion))
-    return _Pair(rate, motion, level[::-1], slope)
+    return _Bands(rate, motion, level[::-1], slope)
+
+
+def _bending(level: Real, slope: Real, number: int) -> int:
+    """Return the band that bends another one most."""
+    apart = np.abs(level[number] - level)
+    bend = np.divide(slope[number] ** 2, apart, out=np.full(len(level), np.inf), where=apart > 0)
+    bend[number] = -1.0
+    return int(bend.argmax())
+
+
+def _to_flat(level: Real, slope: Real, number: int, other: int) -> float | None:
+    """Return how far away a band is flat beside one other, None where both turn the same way."""
+    # mean - drift x +- sqrt(r^2 (x - middle)^2 + gap^2)
+    drift = (slope[number, number] + slope[other, other]) / 2
+    tilt = (slope[number, number] - slope[other, other]) / 2
+    half, r = (level[number] - level[other]) / 2, math.hypot(tilt, slope[number, other])
+    if r <= abs(drift):
+        return None
+    gap = half * abs(slope[number, other]) / r
+    return float(half * tilt / r**2 + drift * gap / (r * math.sqrt(r * r - drift * drift)))
 
 
 def _enough(system: ModalSystem, amplitude: float, period: float, nu: float) -> Hill:
     """Return Hill's matrix with harmonics enough for the bands next to a period and a phase."""
     hill = Hill.of(system, amplitude, period)
     while True:
-        pair = _pair(hill, (2 * np.pi / period) ** 2, nu)
-        if hill.enough(pair.motion[:, [int(np.abs(pair.level).argmin())]]):
+        bands = _bands(hill, (2 * np.pi / period) ** 2, nu)
+        if hill.enough(bands.motion[:, [bands.nearest]]):
             return hill
         hill = hill.larger()
 
@@ -220,45 +263,33 @@ def _enough(system: ModalSystem, amplitude: float, period: float, nu: float) -> 
 def flat_band(system: ModalSystem, amplitude: float, period: float, phase: float) -> Flat:
     """Return where the band next to a period and a phase is flat."""
     nu, square = phase / (2 * np.pi), (2 * np.pi / period) ** 2
-    hill = _enough(system, amplitude, period, nu)
-
-    def nearest(x: float) -> tuple[float, float, _Pair, int]:
-        pair = _pair(hill, square, x)
-        which = int(np.abs(pair.level).argmin())
-        return float(pair.level[which]), float(pair.slope[which, which]), pair, which
-
-    level, slope, pair, which = nearest(nu)
-    if abs(math.remainder(nu, 0.5)) > SYMMETRIC:
-        # where two bands nearly meet they bend in a phase as short as they are apart
-        step = FINE * min(abs(pair.level[0] - pair.level[1]) / square, 1.0)
-        bend = (nearest(nu + step)[1] - slope) / step
-        better = nearest(nu - slope / bend)[0] if bend else level
-        level = better if abs(better - level) < MOVES * square else level
+    bands = _bands(_enough(system, amplitude, period, nu), square, nu)
+    which = bands.nearest
+    level = float(bands.level[which])
+    # at phases 0 and pi by symmetry
+    if abs(math.remainder(nu, 0.5)) > SYMMETRIC and (flat := bands.flat(which)) is not None:
+        level = flat[0] if abs(flat[0] - level) < MOVES * square else level
     found = np.array([2 * np.pi / math.sqrt(square + level)])
-    return Flat(found, order_of(pair.rate, pair.motion[:, which]))
+    return Flat(found, order_of(bands.rate, bands.motion[:, which]))
 
 
-def flat_pair(system: ModalSystem, amplitude: float, period: float, phase: float) -> Flat:
-    """Return where the two bands that nearly meet at a period and a phase are flat."""
+def flat_pair(system: ModalSystem, amplitude: float, period: float, phase: float) -> Flat | None:
+    """Return where two bands that nearly meet at a period and a phase are flat, if they are."""
     nu, square = phase / (2 * np.pi), (2 * np.pi / period) ** 2
     hill = _enough(system, amplitude, period, nu)
     for _ in range(STEPS):
-        pair = _pair(hill, square, nu)
-        level, step = _two_bands(pair.level, pair.slope)
+        bands = _bands(hill, square, nu)
+        found = []
+        for upper in range(len(bands.level) - 1):
+            flats = bands.flat(upper, upper + 1), bands.flat(upper + 1, upper)
+            if flats[0] is not None and flats[1] is not None:
+                level, away = np.transpose(flats)
+                found.append((float(np.abs(level).min()), upper, level, float(away.mean())))
+        if not found:
+            return None
+        _, upper, level, step = min(found, key=lambda one: one[0])
         if abs(step) <= SETTLED:
             break
         nu += step
-    return Flat(2 * np.pi / np.sqrt(square + level), order_of(pair.rate, pair.motion))
-
-
-def _two_bands(level: Real, slope: Real) -> tuple[Real, float]:
-    """Return where the eigenvalues of diag(level) - x slope are flat, and near which x."""
-    # mean - drift x +- sqrt(r^2 (x - x0)^2 + gap^2)
-    mean, half = level.mean(), (level[0] - level[1]) / 2
-    drift, tilt = (slope[0, 0] + slope[1, 1]) / 2, (slope[0, 0] - slope[1, 1]) / 2
-    r = math.hypot(tilt, slope[0, 1])
-    if r <= abs(drift):
-        return level, 0.0  # they turn the same way
-    middle, gap = half * tilt / r**2, abs(half * slope[0, 1]) / r
-    side = gap * math.sqrt(1 - (drift / r) ** 2)
-    return mean - drift * middle + np.array([side, -side]), middle
+    order = order_of(bands.rate, bands.motion[:, upper : upper + 2])
+    return Flat(2 * np.pi / np.sqrt(square + level), order)

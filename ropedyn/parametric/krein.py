@@ -29,7 +29,7 @@ STEP = 1.0  # All phases together turn so far between the first periods that are
 SECTIONS = 4  # Between two periods where something may happen, so many parts are looked at.
 CLOSE = 1e-9  # Hill's matrix goes on from intervals of this part of the period.
 NARROW = 1e-13  # A tongue narrower than this part of its period has no width.
-NEAR = 1e-5  # Where Hill's matrix goes on to lies in this part of the period.
+NEAR = 1e-5  # Tongues that no period falls into lie in this part of theirs.
 TAIL = 1e-10  # Polynomials leave out less than this part of the motion.
 LOST = 14.0
 """Where motion grows by the exponential of this over a period it is taken to grow up to the next
@@ -84,6 +84,7 @@ def undamped(system: ModalSystem, low: float, high: float, amplitude: float) -> 
     found.proved &= bool(through[1] - through[0] == step.wraps.sum())
     at = np.flatnonzero(~step.closed)
     grows, begin, order = bool(state.off[0].any()), low, 0
+    pairs = list[tuple[float, float]]()
     # neighbours that stay open are one place
     for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1) if len(at) else []:
         ends = state.some([int(run[0]), int(run[-1]) + 1])
@@ -97,11 +98,12 @@ def undamped(system: ModalSystem, low: float, high: float, amplitude: float) -> 
                 found.unstable.append(Unstable(begin, float(edge.period[0]), order, edge.order))
             grows, begin, order = after, float(edge.period[0]), edge.order
         elif not grows:
-            narrow = _narrow(system, amplitude, where, ends.phase[0][np.nonzero(passed)[0]])
-            found.proved &= narrow.proved
-            found.unstable += narrow.unstable
+            pairs += [(where, phase) for phase in ends.phase[0][np.nonzero(passed)[0]].tolist()]
     if grows:
         found.unstable.append(Unstable(begin, high, order, 0))
+    narrow = [_narrow(system, amplitude, *pair, found.unstable) for pair in pairs]
+    found.proved &= None not in narrow
+    found.unstable += [tongue for tongue in narrow if tongue and tongue.begin < tongue.end]
     return found
 
 
@@ -168,16 +170,20 @@ def _through(system: ModalSystem, amplitude: float, period: float, state: _Phase
     return math.nan if twice % 2 else twice / 2
 
 
-def _narrow(system: ModalSystem, amplitude: float, period: float, phases: Real) -> Regions:
-    """Find the tongues of pairs of multipliers that pass each other at a period and phases."""
-    found = Regions()
-    for phase in phases.tolist():
-        flat = flat_pair(system, amplitude, period, phase)
-        begin, end = flat.period.tolist()
-        apart = np.abs(flat.period - period)
-        # beside one edge of a wide tongue the other one is found where motion grows
-        if apart.min() > NEAR * period:
-            found.proved = False
-        elif apart.max() < NEAR * period and end - begin > NARROW * period:
-            found.unstable.append(Unstable(begin, end, flat.order, flat.order))
-    return found
+def _narrow(
+    system: ModalSystem, amplitude: float, period: float, phase: float, wide: list[Unstable]
+) -> Unstable | None:
+    """Find the tongue of two multipliers that pass each other at a period and a phase.
+
+    One without width begins where it ends; there is none where it is not found.
+    """
+    flat = flat_pair(system, amplitude, period, phase)
+    if flat is None:
+        return None
+    begin, end = flat.period.tolist()
+    closed = Unstable(period, period, flat.order, flat.order)
+    if any(one.begin <= (begin + end) / 2 <= one.end for one in wide):
+        return closed  # they leave a wide one, and pass each other beside its edge
+    if max(abs(begin - period), abs(end - period)) > NEAR * period:
+        return None
+    return Unstable(begin, end, flat.order, flat.order) if end - begin > NARROW * period else closed

@@ -116,7 +116,7 @@ class StabilityMap(Answer):
             If it is not a number.
         SceneError
             If it is negative or not finite, or larger than the mean tension of a rope without
-            bending stiffness.
+            bending stiffness, or the map has one frequency.
         SolveError
             If a period takes too many steps or motion grows out of all numbers in it.
 
@@ -131,6 +131,11 @@ class StabilityMap(Answer):
         array([ 97.485, 102.484])
         """
         value = check.number(amplitude, "amplitude", "N", sign="nonnegative")
+        if len(self.frequency) < 2:
+            raise SceneError(
+                "frequency of the map must hold two at least, between which edges are found, got "
+                f"{self.frequency.tolist()}"
+            )
         return boundary(self.system, float(self.frequency[0]), float(self.frequency[-1]), value)
 
     def table(self) -> Table:

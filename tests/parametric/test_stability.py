@@ -194,3 +194,8 @@ def test_rope_that_only_twists_is_refused():
 def test_amplitude_of_a_boundary_is_checked():
     with pytest.raises(rd.SceneError, match="amplitude"):
         mapped(STRING, [40.0, 60.0], 1).boundary(-1.0)
+
+
+def test_a_boundary_needs_two_frequencies_to_lie_between():
+    with pytest.raises(rd.SceneError, match=r"frequency of the map must hold two at least.*50"):
+        mapped(STRING, [50.0], 1).boundary(1.0)

@@ -104,6 +104,61 @@ def test_a_tongue_as_narrow_as_rounding_has_its_edges():
     assert 1e-11 < np.ptp(found.frequency) / found.frequency[0] < 1e-10
 
 
+ALIKE = ModalSystem(
+    np.array([37.206435551991575, 37.20792313357203, 37.20792313357203]),
+    np.array(
+        [
+            [37.14545708033866, 0.03211764993092806, 1.5043806432142193],
+            [0.03211764993092806, 0.0034804000379310956, 0.005643700832649287],
+            [1.5043806432142193, 0.005643700832649287, 0.07669824786348248],
+        ]
+    ),
+    np.zeros((3, 3)),
+)
+"""Three modes whose bands lie within 1e-6 of each other."""
+
+
+def modes_alike(rng):
+    """Two to four modes as far apart as 1e-8 to 1e-2, of which slopes of any size couple some."""
+    k = int(rng.integers(2, 5))
+    omega = 2 * np.pi * (1 + np.append(0.0, np.cumsum(10 ** rng.uniform(-8, -2, k - 1))))
+    slopes = rng.normal(size=(k, k)) * 10 ** rng.uniform(-2, 0, (k, 1))
+    size = np.linalg.eigvalsh(slopes @ slopes.T / np.multiply.outer(omega, omega)).max()
+    return ModalSystem(omega**2, slopes @ slopes.T / size, np.zeros((k, k)))
+
+
+def growth_between(system, amplitude, low, high):
+    """Widths of tongues and gaps between edges, and growth beside, in and beside each, (n, 5)."""
+    edge = boundary(system, low, high, amplitude).frequency
+    part = np.array([-0.05, 0.1, 0.5, 0.9, 1.05])
+    width = np.diff(edge)
+    motion = Propagator.of(system, 1 / high, 1 / low, amplitude)
+    at = edge[:-1, None] + np.multiply.outer(width, part)
+    value = np.linalg.eigvals(motion(1 / at.ravel()))
+    return width, np.log(np.abs(value)).max(axis=1).reshape(at.shape)
+
+
+def test_tongues_of_modes_alike_are_as_wide_as_they_grow():
+    """Growth is half an ellipse between the edges of a narrow tongue, and none beside it."""
+    rng, tongues = np.random.default_rng(11), []
+    asked = [(ALIKE, 0.9540519257800963, 0.45, 1.5)]
+    for _ in range(40):
+        alone = 2 / rng.integers(2, 5)
+        asked.append((modes_alike(rng), rng.uniform(0.3, 0.9), 0.9 * alone, 1.03 * alone))
+    for one in asked:
+        width, growth = growth_between(*one)
+        seen = width > 1e-11
+        grows = seen & (growth[:, 2] > 1e-12)
+        # every second one is a tongue
+        assert ((grows[1:] != grows[:-1]) | ~seen[1:] | ~seen[:-1]).all()
+        tongues.append(growth[grows & (width < 1e-6)])
+    found = np.concatenate(tongues)
+    assert len(found) > 20
+    # rounding leaves 1e-13 of what keeps its size
+    assert found[:, [1, 3]] == pytest.approx(0.6 * found[:, [2, 2]], rel=0.05, abs=1e-12)
+    assert np.abs(found[:, [0, 4]]).max() < 1e-12
+
+
 def test_modes_that_do_not_couple_pass_without_a_tongue():
     """f1 + f2 of a system without Gamma_12 is counted, and has no width."""
     coupled = ModalSystem(
