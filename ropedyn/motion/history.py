@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..base.answer import Answer, Cost, Frozen, axes, kept_as
 from ..base.array import Complex, Real
+from ..base.check import NEAR
 from ..base.computed import Lazy, Read, lazy
 from ..base.drawing import draw
 from ..base.errors import SceneError
@@ -24,7 +25,7 @@ from ..scene.force import Force
 from ..scene.toml import force_from, force_words
 from ..signal.ringdown import RingDown, ring_down
 from ..signal.spectrum import Spectrum, amplitude, spectrum
-from .response_estimate import estimated
+from .response_estimate import estimated, is_struck_between
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -94,8 +95,9 @@ class History(Answer):
         at 4 values for each rad of the modes and forces, 16 at least between two times: 2 s at
         10 kHz of 126 modes take 10 s. Work of a tension that pulsates is input; of an
         end that jumps, what stays of it. Where stops or a `NodeForce` act, what they took since
-        then is "laws" and belongs to the sum. Refused where a pulsating tension turns an end of a
-        laid rope, and between nodes where the tension varies.
+        then is "laws" and belongs to the sum. What a damped element takes of a blow at an instant
+        between its nodes is infinite, and in none. Refused where a pulsating tension turns an end
+        of a laid rope, and between nodes where the tension varies.
     snapshot_time : ndarray, shape (s,)
         When the whole rope was looked at [s].
     x : ndarray, shape (nodes,)
@@ -384,7 +386,8 @@ class History(Answer):
             If something is of the wrong type.
         SceneError
             If times have not equal steps, nothing drives at the times, or something else does, as
-            loads that were let go, or acceleration is asked for where a blow at an instant hits.
+            loads that were let go, or a blow shorter than two steps hits what follows it at once:
+            the acceleration asked for, or between nodes the element.
 
         References
         ----------
@@ -432,18 +435,26 @@ class History(Answer):
         )
 
     def _refuse_struck(self, drive: int, order: int) -> None:
-        """Refuse the acceleration of what a blow at an instant hits, which no sample shows."""
-        if order < 2 or drive not in range(len(self.law)) or is_end(self.drive[drive]):
+        """Refuse what follows a blow at once, which no sample shows.
+
+        So does the acceleration of what it hits, and between nodes all motion of the element.
+        """
+        if drive not in range(len(self.law)) or is_end(self.drive[drive]):
             return
-        x, struck, blows = self.x, self.drive[drive], self.law[drive].blows
-        if not any(self.time[0] <= at <= self.time[-1] for at, _ in blows):
+        if not is_struck_between(self.law[drive], self.time):
+            return
+        x, struck = self.x, self.drive[drive]
+        is_node = np.isclose(x, struck[1], rtol=0.0, atol=NEAR * x[-1]).any()
+        if order < 2 and (is_node or self.cost.elements < len(x) - 1):  # or of continuous spans
             return
         first = x[max(int(np.searchsorted(x, struck[1])) - 1, 0)]
         last = x[min(int(np.searchsorted(x, struck[1], side="right")), len(x) - 1)]
         for point in self.response:
             if not is_tip(point) and first < point[1] < last:
+                asked = f"response must not be {point}"
+                if order == 2:
+                    asked = f'quantity must be "displacement" or "velocity" of {point}'
                 raise SceneError(
-                    f'quantity must be "displacement" or "velocity" of {point} for a response per '
-                    f"force where a blow at an instant hits {struck}, which no sample of the "
-                    'acceleration shows, got "acceleration"'
+                    f"{asked} for a response per force where a blow between two times hits "
+                    f"{struck}: no sample of the {self.quantity} shows what follows it at once"
                 )

@@ -17,6 +17,7 @@ from ..signal.spectrum import time_step
 from .force_spectrum import transform
 
 TAIL = 20  # The last of so many parts of a record says whether the motion has decayed.
+SEEN = 2  # Samples show a blow that lasts for so many steps, and how they fold it.
 LEFT = 1e-6  # Less of the largest value counts as nothing.
 
 EXACT = "force: its exact transform, of what it does between the times too"
@@ -77,6 +78,19 @@ def _folds(time: Real, folded: float) -> tuple[str, ...]:
         f"motion: faster than half the rate of the times, {half:g} Hz, it folds into the lines: by "
         f"about {folded:.2g} of the largest",
     )
+
+
+def is_struck_between(force: Force, time: Real) -> bool:
+    """Whether a blow lasts for less than `SEEN` steps, within the times."""
+    if any(time[0] <= at <= time[-1] for at, _ in force.blows):
+        return True
+    at = np.unique([one for one in force.breaks if time[0] <= one <= time[-1]])
+    step = time_step(time)
+    begin, end = (one[np.diff(at) < SEEN * step] for one in (at[:-1], at[1:]))
+    before, within, after = (
+        force.value(one) for one in (np.nextafter(begin, -np.inf), (begin + end) / 2, end)
+    )
+    return bool(((within - before) * (within - after) > 0).any())
 
 
 def _at_the_end(time: Real, value: Real, force: Real) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """Motion of a few points as undamped modes, each damped for itself, and what follows them at rest.
 
-    q_k'' + 2 sigma_k q_k' + square_k q_k = sum_i push[k, i] f_i
+    q_k'' + 2 sigma_k q_k' + square_k q_k = sum_i push[k, i] (f_i + lead_i f_i')
     y_o = sum_k (seen[o, k] q_k + swept[o, k] q_k') + sum_i (now[o, i] f_i + late[o, i] l_i),
     l_i + gamma l_i' = f_i
 
@@ -59,6 +59,7 @@ class States:
     swept: Real  # (outputs, k) [s]; 0 but of internal forces where stiffness is damped
     now: Real  # (outputs, inputs)
     late: Real  # (outputs, inputs)
+    lead: Real  # (inputs,) [s]; 0 but of the motion of ends where stiffness is damped
     gamma: float  # [s]
     beyond: float  # Angular frequency of the lowest mode that is left out [rad/s], or infinite
     drag: float  # of the modes that are left out, as proportional damping [1/s]
@@ -76,7 +77,8 @@ class States:
         """Return the transfer functions at rates s [rad/s], shape (outputs, inputs, n)."""
         own = 1 / (s * s + 2 * np.multiply.outer(self.sigma, s) + self.square[:, None])
         row = self.seen[:, :, None] + np.multiply.outer(self.swept, s)
-        value = np.einsum("okn,kn,ki->oin", row, own, self.push, optimize=True)
+        push = self.push[:, :, None] * (1 + np.multiply.outer(self.lead, s))
+        value = np.einsum("okn,kn,kin->oin", row, own, push, optimize=True)
         late = self.late[:, :, None] / (1 + self.gamma * s)
         return np.asarray(value + self.now[:, :, None] + late)
 
@@ -227,13 +229,16 @@ def states(
     gamma, drag = closed.soften.real, closed.drag.real
     sigma = ratio * omega + (drag + gamma * eigenvalue) / 2
     # internal forces are the elastic ones with what damps them; so is what moves with an end
-    at_once = np.logical_or.outer(
-        np.array([is_force(p) for p in outputs], dtype=np.bool_),
-        np.array([is_end(p) for p in inputs], dtype=np.bool_),
-    )
+    forces = np.array([is_force(p) for p in outputs], dtype=np.bool_)
+    ends = np.array([is_end(p) for p in inputs], dtype=np.bool_)
+    at_once = np.logical_or.outer(forces, ends)
     if gamma == 0:
         at_once[:] = True
-    forces = np.array([is_force(p) for p in outputs], dtype=np.bool_)
+    elif forces.any() and ends.any():
+        raise SceneError(
+            "response must not be an internal force where an end is moved and stiffness is damped: "
+            "a jump of the end would take an infinite force"
+        )
     return States(
         sigma=sigma[own],
         square=eigenvalue[own],
@@ -242,12 +247,20 @@ def states(
         swept=np.where(forces[:, None], gamma * seen, 0.0),
         now=np.where(at_once, rest, 0.0),
         late=np.where(at_once, 0.0, rest),
+        lead=np.where(ends, gamma, 0.0),
         gamma=gamma,
         beyond=beyond,
         drag=drag,
         ratio=float(ratio.max(initial=0.0)),
         left=left,
     )
+
+
+def softens(model: Compiled, component: tuple[str, ...]) -> bool:
+    """Whether stiffness is damped, all of it alike."""
+    plain = without_dashpots(model, component)[0].chain.only(component)
+    closed = proportional(plain, Rates.of(model.scene.dampings))
+    return closed is not None and closed.soften != 0
 
 
 def why_coupled(model: Compiled, component: tuple[str, ...]) -> str:

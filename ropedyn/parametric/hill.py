@@ -281,8 +281,9 @@ def flat_pair(system: ModalSystem, amplitude: float, period: float, phase: float
         bands = _bands(hill, square, nu)
         found = []
         for upper in range(len(bands.level) - 1):
-            flats = bands.flat(upper, upper + 1), bands.flat(upper + 1, upper)
-            if flats[0] is not None and flats[1] is not None:
+            each = bands.flat(upper, upper + 1), bands.flat(upper + 1, upper)
+            flats = [one for one in each if one is not None]
+            if len(flats) == 2:
                 level, away = np.transpose(flats)
                 found.append((float(np.abs(level).min()), upper, level, float(away.mean())))
         if not found:

@@ -178,7 +178,7 @@ def test_a_file_keeps_what_no_sample_shows(tmp_path):
     model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0).compile(elements=2, element="rigid")
     asked = {"drive": ("z", 0.5), "force": rd.Impulse(0.01, time=0.02), "quantity": "acceleration"}
     model.transient(np.arange(64) / 1000.0, **asked).save(tmp_path / "motion.nc")
-    with pytest.raises(rd.SceneError, match="where a blow at an instant hits"):
+    with pytest.raises(rd.SceneError, match="where a blow between two times hits"):
         rd.load(tmp_path / "motion.nc").frf()
 
 
@@ -195,6 +195,21 @@ def test_acceleration_that_no_sample_shows_is_refused():
     exact = model.frf(found.frequency, drive=("z", 0.25), response=("z", 0.75))
     off = found.value + exact.value * (2 * np.pi * found.frequency) ** 2
     assert np.abs(off).max() < 0.01 * np.abs(found.value).max()
+
+
+@pytest.mark.parametrize("duration", [0.0, 2e-6, 4e-4])
+@pytest.mark.parametrize("quantity", ["displacement", "velocity", "acceleration"])
+def test_what_follows_a_blow_between_two_times_at_once_is_refused(duration, quantity):
+    """Between nodes the element does: of the receptance 13 % were missing, with a note of 4e-4."""
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=rd.ViscousDamping(8.0))
+    model, time = scene.compile(elements=6), np.arange(4000) / 4000.0
+    blow = rd.Impulse(0.01, time=0.0101, duration=duration)
+    at = {"drive": ("z", 0.42), "force": [blow, rd.Step(0.0)], "quantity": quantity}
+    with pytest.raises(rd.SceneError, match="where a blow between two times hits"):
+        model.transient(time, **at).frf()
+    # those that last are seen, and what is elsewhere
+    model.transient(time, **(at | {"force": rd.Impulse(0.01, time=0.01, duration=2e-3)})).frf()
+    model.transient(time, **at, response=("z", 0.75)).frf()
 
 
 def test_what_was_let_go_is_no_response_per_force():

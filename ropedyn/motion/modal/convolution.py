@@ -16,6 +16,7 @@ from .exponentials import Exponentials, Oscillators, evaluate, invert, rates
 from .recurrence import straight_lines
 
 LARGEST = 1e300  # A growing mode may reach this.
+SOON = 1e-9  # What lasts for less of the time that is asked for is told as what lasts so long.
 
 
 def motion_under(
@@ -91,7 +92,8 @@ def _chirp(modes: Oscillators, rest: Real, force: Chirp, time: Real, order: int)
     value = np.zeros((len(rest), len(time)))
     value[:, :last], q, v = under_chirp(modes, rest, now, time[:last] - begin, order)
     if last < len(time):
-        terms = _motion(modes, SinePiece(end), (q, v), float(time[-1] - end) or now.span, order)
+        span = max(float(time[-1] - end), SOON * float(time[-1] - begin))
+        terms = _motion(modes, SinePiece(end), (q, v), span, order)
         value[:, last:] = evaluate(terms.rate, _seen(modes, terms), time[last:] - end)
     return value
 
@@ -101,12 +103,13 @@ def _sines(modes: Oscillators, rest: Real, turns: list[SinePiece], time: Real, o
     value = np.zeros((len(rest), len(time)))
     q = v = np.zeros_like(modes.sigma)
     turns = [piece for piece in turns if piece.start <= time[-1]]
+    least = SOON * float(time[-1] - time[0])
     for piece, following in zip(turns, [*turns[1:], None]):
         stop = time[-1] if following is None else following.start
         until = len(time) if following is None else np.searchsorted(time, stop)
         now = slice(np.searchsorted(time, piece.start), until)
         v = v + piece.kick
-        span = float(stop - piece.start or time[-1] - time[0])
+        span = max(float(stop - piece.start), least)
         terms = _motion(modes, piece, (q, v), span, order)
         value[:, now] = evaluate(terms.rate, _seen(modes, terms), time[now] - piece.start)
         if rest.any():

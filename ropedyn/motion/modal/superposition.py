@@ -90,7 +90,7 @@ def _rounding(run: Run, shares: tuple[Share, ...], value: Real) -> Real:
     # as of the fastest, which assembled matrices do not tell better, unless that is too much
     most, since = np.abs(value).max(axis=1, initial=0.0), run.time - run.time[0]
     each = [
-        (share, k, _sizes(run, share.expansion, k, run.pushes[d]))
+        (share, k, sizes(share.expansion, k, run.pushes[d], run.time, run.order))
         for share in shares
         for k, d in enumerate(share.drive)
     ]
@@ -128,12 +128,13 @@ def _drifted(run: Run, each: list[tuple[Share, int, Real]], most: Real, since: R
     return np.asarray(shaken[:, None] + slipped)
 
 
-def _sizes(run: Run, modes: Expansion, drive: int, push: Force | float) -> Real:
+def sizes(modes: Expansion, drive: int, push: Force | float, time: Real, order: int) -> Real:
     """Return how large modes are without their signs, off resonance, (responses, k)."""
-    pushes, blow = peak(push, run.time)
+    pushes, blow = peak(push, time)
+    span = float(time[-1] - time[0])
     each = [
-        pushes * _reach(modes.square, run, run.order + n, 2)
-        + blow * _reach(modes.square, run, run.order + n, 1)
+        pushes * _reach(modes.square, span, order + n, 2)
+        + blow * _reach(modes.square, span, order + n, 1)
         for n in range(2)
     ]
     return np.asarray(np.abs(modes.a[drive]) * each[0] + np.abs(modes.b[drive]) * each[1])
@@ -157,13 +158,13 @@ def _departing(run: Run, modes: Expansion, drive: int, push: Force | float) -> R
     return far
 
 
-def _reach(square: Real, run: Run, order: int, smooth: int) -> Real:
+def _reach(square: Real, span: float, order: int, smooth: int) -> Real:
     """Return how far a derivative of modes goes: 2 omega^(order - smooth), less for short times.
 
     Under a force of 1, with smooth = 2, or after a blow of 1, with smooth = 1.
     """
     left = smooth - order
-    omega, span = np.sqrt(np.abs(square)), float(run.time[-1] - run.time[0])
+    omega = np.sqrt(np.abs(square))
     with np.errstate(divide="ignore"):
         far = 2 * omega**-left
     return np.asarray(np.minimum(far, span**left) if left >= 0 else far)

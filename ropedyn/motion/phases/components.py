@@ -17,7 +17,7 @@ from ...response.moved_end import is_end
 from ...scene.tension import Tension
 from ..acting import scene_laws
 from ..request import Run
-from ..states import states, why_coupled, without_dashpots
+from ..states import softens, states, why_coupled, without_dashpots
 from .phase import PhaseSystem, extras, phase_laws
 from .pieces import is_chirp
 from .walk import Instant
@@ -55,8 +55,6 @@ def moving_components(run: Run, looks: Sequence[Look], modes: int) -> list[Movin
         inputs: list[Any] = [*(run.drives[k] for k in drives), *loads, *laws.points]
         outputs: list[Point] = [*seen, *laws.points]
         st = states(model, component, inputs, outputs, modes=modes)
-        if st.late.any() and any(map(is_end, inputs)):
-            raise SceneError("drive must not be the motion of an end where stiffness is damped")
         span = float(run.time[-1] - run.time[0])
         system = PhaseSystem(st, laws, len(drives), len(loads), len(seen), span)
         found.append(Moving(system, drives, list(loads.values()), watched))
@@ -107,8 +105,13 @@ def why_not_events(run: Run) -> str:
         return f"tension must not change, got {tension}"
     if any(map(is_chirp, run.forces)):
         return "force must not be a Chirp"
-    for component in model.components:
-        damped = why_coupled(without_dashpots(model, component)[0], component)
-        if damped:
-            return damped
-    return ""
+    return next(filter(None, (_why_damping(run, c) for c in model.components)), "")
+
+
+def _why_damping(run: Run, component: tuple[str, ...]) -> str:
+    """Say how a component must be damped, with nothing where it is."""
+    damped = why_coupled(without_dashpots(run.model, component)[0], component)
+    moved = [place for place in run.places if is_end(place) and moving(place) in component]
+    if damped or not moved or not softens(run.model, component):
+        return damped
+    return f"drive must not be the motion of an end where stiffness is damped, got {moved}"

@@ -1,7 +1,7 @@
 """Where the energy is while stops and friction act.
 
 kinetic    sum of q'^2/2,       strain   sum of square q^2/2 and of what modes leave out, f R f/2
-laws       k (u - gap)^2/2 of stops,     input   integral of f u' of the drives, and jumps
+laws       k (u - gap)^2/2 of stops less what it was,   input   integral of f u' and jumps
 dissipated integral of 2 sigma q'^2, of F |u'| where friction slips, of f^2/c of dashpots,
 and of gamma l' R l' of what modes leave out
 """
@@ -16,6 +16,7 @@ import numpy as np
 from ...base.array import Real
 from ...base.errors import SceneError
 from ...response.moved_end import is_end
+from ...scene.force import Force
 from ..history import Balance
 from ..request import Run
 from .components import Look, Moving, moving_components, rest
@@ -62,13 +63,16 @@ def _component(run: Run, one: Moving) -> Real:
     """Return the energies of one component, (names, t)."""
     result = np.zeros((len(NAMES), len(run.time)))
     done = np.zeros(2)  # input and dissipated
-    before = None
+    before, pressed = None, 0.0
     forces = [run.forces[k] for k in one.drives]
+    _refuse_infinite(one, forces, run.time)
     for visit in PhaseWalk(one.system).visits(rest(one, 0.0), pieces(forces, run.time)):
         edges = _edges(one, visit, run.time)
         stored = _stored(one, _look(one, visit, edges))
-        # motion begins at rest: what is kinetic at once a blow has put in
-        done[0] += stored[0, 0] if before is None else stored[:, 0].sum() - before
+        if before is None:
+            rested = _stored(one, _at_rest(one, visit))
+            before, pressed = rested.sum(), float(rested[2, 0])
+        done[0] += stored[:, 0].sum() - before
         before = stored[:, -1].sum()
         nodes = (edges[:-1, None] + np.multiply.outer(np.diff(edges), (NODES + 1) / 2)).ravel()
         power = _powers(one, visit, _look(one, visit, nodes))
@@ -78,9 +82,21 @@ def _component(run: Run, one: Moving) -> Real:
         i, j = np.searchsorted(run.time, [visit.start, visit.stop])
         j += int(visit.stop >= run.time[-1])
         at = np.minimum(np.searchsorted(edges, run.time[i:j]), len(edges) - 1)
-        result[:2, i:j], result[4, i:j] = stored[:2, at], stored[2, at]
+        result[:2, i:j], result[4, i:j] = stored[:2, at], stored[2, at] - pressed
         result[2:4, i:j] = gone[:, at]
     return result
+
+
+def _refuse_infinite(one: Moving, forces: list[Force], time: Real) -> None:
+    """Refuse blows at an instant on flexibility that relaxes, which take an infinite energy."""
+    system = one.system
+    yields = np.diag(system.states.late[:, : system.drives])
+    for force, give in zip(forces, yields):
+        if give and any(time[0] <= at <= time[-1] for at, _ in force.blows):
+            raise SceneError(
+                "energy is not told where a blow at an instant hits between nodes and stiffness is "
+                f"damped, which takes an infinite one, got {force}"
+            )
 
 
 def _edges(one: Moving, visit: Visit, time: Real) -> Real:
@@ -113,6 +129,15 @@ def _look(one: Moving, visit: Visit, time: Real) -> _Seen:
     force = np.concatenate([given, y[system.responses + laws :]])
     slow = state.derivative().some(slice(2 * k, None)).at(since)
     return _Seen(x[:k], x[k : 2 * k], y[: len(speed)], speed, force, x[2 * k :], slow)
+
+
+def _at_rest(one: Moving, visit: Visit) -> _Seen:
+    """Look at the start of the first visit before anything drives."""
+    seen, system = _look(one, visit, np.array([visit.start])), one.system
+    push = visit.driven.push.at(np.zeros(1))
+    y = visit.phase.matrices.Dd @ push
+    force = np.concatenate([push, np.zeros((system.loads, 1)), y[len(seen.u) :]])
+    return seen._replace(v=0 * seen.v, u=seen.u - y[: len(seen.u)], force=seen.force - force)
 
 
 def _stored(one: Moving, seen: _Seen) -> Real:

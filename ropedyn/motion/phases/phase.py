@@ -251,7 +251,11 @@ def _lines(
 def _solved(lines: Real, rows: _Rows) -> Real:
     """Return the forces as rows over everything else."""
     known = np.concatenate([lines[:, : rows.f.start], lines[:, rows.f.stop :]], axis=1)
-    return -np.linalg.solve(lines[:, rows.f], known) if len(lines) else known
+    if not len(lines):
+        return known
+    # flexibilities and inverse masses: as large as the units make them
+    size = np.abs(lines[:, rows.f]).max(axis=1, keepdims=True)
+    return -np.linalg.solve(lines[:, rows.f] / size, known / size)
 
 
 def _constrained(system: PhaseSystem, fixed: list[int], contacts: int) -> tuple[Real, Real]:

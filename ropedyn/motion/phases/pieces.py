@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Complex, Real
+from ...base.check import NEAR
 from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
 from .driven import Forcing
 
@@ -28,6 +29,10 @@ def pieces(forces: Sequence[Force], time: Real, factor: float = 1.0) -> Iterator
     first, last = float(time[0]), float(time[-1])
     each = [list(_flat(force)) for force in forces]
     cuts = {first, last}
+    if any(at == last for some in each for one in some for at in one.breaks):
+        cuts.add(
+            last + NEAR * (last - first)
+        )  # what jumps at the last time has its value from then
     for one in (one for some in each for one in some):
         inner = one.time.tolist() if isinstance(one, Samples) else one.breaks
         cuts.update(t for t in (*inner, *(at for at, _ in one.blows)) if first < t < last)

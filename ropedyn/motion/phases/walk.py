@@ -18,6 +18,7 @@ from .poles import Poles, poles_of
 
 AT_ONCE = 64  # Events so close to each other, at most,
 INSTANT = 1e-11  # of the time that is asked for.
+UNMOVED = 1e-12  # A blow that moves a point by less of what modes move it does not.
 SHARE = 1 / 16  # Of products that rounding adds up, beside their sum.
 
 
@@ -231,15 +232,19 @@ class PhaseWalk:
         self, now: Instant, mode: tuple[int, ...], piece: ForcePiece
     ) -> tuple[Instant, tuple[int, ...]]:
         """Let blows act: friction on nothing but mass slips at once."""
-        system = self.system
+        system, st = self.system, self.system.states
         contacts = len(system.laws.contacts)
-        v = now.v + system.states.push[:, : system.drives] @ piece.kick
+        kick = st.push[:, : system.drives] @ piece.kick
+        v, e = now.v + kick, now.e.copy()
+        if system.late:
+            e[: system.drives] += piece.kick / st.gamma
         new, soft = list(mode), system.soft
         for k in range(contacts, contacts + len(system.laws.frictions)):
-            speed = float(system.states.push[:, system.first + k] @ v)
-            if not soft[k] and speed != 0:
-                new[k] = 1 if speed > 0 else -1
-        return now._replace(v=v), tuple(new)
+            push = st.push[:, system.first + k]
+            # modes that strike a point and cancel leave what it did
+            if not soft[k] and abs(push @ kick) > UNMOVED * (np.abs(push) @ np.abs(kick)):
+                new[k] = int(np.sign(push @ v))
+        return now._replace(v=v, e=e), tuple(new)
 
 
 def _scaled(course: Course, factor: float, shift: float) -> Course:

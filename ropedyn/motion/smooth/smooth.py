@@ -17,20 +17,22 @@ from ...base.answer import Cost
 from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...chain.compiled import Compiled
-from ...chain.port import Point, locate, moving
+from ...chain.port import Point, is_force, locate, moving
 from ...eigen.damped.proportional import proportional
 from ...eigen.damped.rates import Rates
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
+from ...response.moved_end import is_end
 from ..acting import acting_laws
 from ..coupled.energy import of_chain
 from ..coupled.steps import CoupledPassage
 from ..coupled.system import CoupledSystem, moving_together, refuse_points, tension_of
 from ..history import History, ended_by
 from ..linear import solve_linear
+from ..modal.superposition import sizes
 from ..moved import against_spans
 from ..request import TOLERANCE, Run
-from ..states import LARGEST, without_dashpots
+from ..states import LARGEST, softens, without_dashpots
 from ..undamped import losses_of
 from .laws import PointLaw, laws_on, why_not_smooth
 from .passage import LawPassage, Runs, reach
@@ -63,7 +65,12 @@ def _is_smooth(run: Run) -> bool:
     model = run.model
     if why_not_smooth(model) or losses_of(model):
         return False
-    return all(_is_taken(model, component) for component in model.components)
+    told = any(map(is_force, run.responses))
+    for component in model.components:
+        moved = any(is_end(place) and moving(place) in component for place in run.places)
+        if not _is_taken(model, component) or (moved and told and softens(model, component)):
+            return False
+    return True
 
 
 def _is_told(run: Run) -> bool:
@@ -175,7 +182,7 @@ def agree(
             found.step_error = wrong + rounding(looked[0], time)
             worst = float((found.step_error / size).max(initial=0.0))
             if worst <= tolerance:
-                return found
+                return _cancelled(found, system, tolerance)
         hard += not passed.settles
         if passed.error is not None and (passed.settles or hard > HARD):
             return found
@@ -188,6 +195,25 @@ def agree(
                 f"{round(span / h / system.finer)} the error is {worst:.3g}"
             )
             return found
+
+
+def _cancelled(found: Agreed, system: LawSystem, tolerance: float) -> Agreed:
+    """Add what rounding leaves of modes that cancel, as where motion has hardly begun."""
+    look, size = system.looks[0], np.zeros(len(found.looked[0]))
+    for one, push in zip(system.driven, system.pushes):
+        each = sizes(one, 0, push, system.time, look.order)
+        size += each[look.output].sum(axis=1)[: len(size)]
+    found.step_error = found.step_error + ROUNDING * size[:, None]
+    # what moves less is held
+    most = np.maximum(np.abs(found.looked[0]).max(axis=1, initial=0.0), NOTHING * size)
+    lost = ROUNDING * size > tolerance * most
+    if lost.any():
+        found.error = SolveError(
+            f"motion has hardly begun: of modes that cancel rounding leaves up to "
+            f"{(ROUNDING * size[lost] / most[lost]).max():.1e} of it, not {tolerance:g}. A later "
+            "time helps"
+        )
+    return found
 
 
 def component_motion(

@@ -163,12 +163,12 @@ def oscillating(found: States, laws: int) -> Oscillating:
 
 def expansion(found: States, which: int) -> Expansion:
     """Return what one input moves as an expansion of one drive."""
-    push, lag = found.push[:, which], found.gamma
+    push, lag, lead = found.push[:, which], found.gamma, found.lead[which]
     return Expansion(
         sigma=found.sigma,
         square=found.square,
         a=(found.seen * push)[None],
-        b=(found.swept * push)[None],
+        b=((found.swept + lead * found.seen) * push)[None],
         p=np.array([-1 / lag] if lag else []),
         r=found.late[None, :, which, None] / lag if lag else np.zeros((1, len(found.late), 0)),
         rest=found.now[None, :, which],

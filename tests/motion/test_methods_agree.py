@@ -1,0 +1,198 @@
+"""Laws that never act leave linear motion: what one method tells, the others do."""
+
+import numpy as np
+import pytest
+
+import ropedyn as rd
+
+STRING = rd.Rope(1.0, 0.2)
+PINNED = {"elements": 8, "element": "rigid"}
+TIME = np.linspace(0.0, 0.02, 101)
+LAST = float(TIME[-1])
+FAR = rd.Stop(0.375, 1e4, gap=1.0)
+FAINT = rd.NodeForce(0.375, lambda t, u, v: -1e-9 * u**3)
+
+
+def moved(part, damping=None, how=PINNED, time=TIME, **asked):
+    """The motion with a law, with none where it is None, and with dampers that act on nothing."""
+    parts = [] if part is None else [part]
+    scene = rd.Scene(STRING, tension=1000.0, damping=damping, parts=parts)
+    return scene.compile(**how).transient(time, **asked)
+
+
+def off(history, other):
+    """How far motions are apart, in parts of the largest of each response."""
+    most = np.abs(other.value).max(axis=1, keepdims=True)
+    return float((np.abs(history.value - other.value) / most).max())
+
+
+@pytest.mark.parametrize(
+    ("part", "method", "accepted"),
+    [
+        (FAR, "volterra", 2e-7),
+        (FAINT, "collocation", 1e-9),
+        (rd.Dashpot(0.375, 1e-9, exponent=0.0), "volterra", 2e-7),
+    ],
+)
+def test_an_end_that_moves_damped_stiffness_pulls_with_its_rate_too(part, method, accepted):
+    """The force lacked the damper's: 2 % off, and 1e-11 said."""
+    damping = rd.RayleighDamping(0.0, 1e-4)
+    asked = {"drive": ("end", 1, "z"), "force": rd.Sine(0.01, 30.0), "response": ("z", 0.375)}
+    found, exact = (moved(one, damping, **asked) for one in (part, None))
+    assert (found.cost.method, exact.cost.method) == (method, "modal")
+    assert off(found, exact) <= accepted
+    assert (np.abs(found.value - exact.value) <= found.error + exact.error).all()
+    force = asked | {"response": ("F_z", 0.5)}
+    assert (
+        off(moved(part, damping, **force), moved(rd.Dashpot(0.375, 1e-9), damping, **force)) < 1e-3
+    )
+    with pytest.raises(rd.SceneError, match="drive must not be the motion of an end where stiff"):
+        moved(FAR, damping, **asked, method="events")
+    # undamped, phases take it
+    assert moved(FAR, **asked).cost.method == "events"
+
+
+@pytest.mark.parametrize("quantity", ["displacement", "velocity"])
+@pytest.mark.parametrize("when", [0.0, 2.4321e-4, 0.01])
+def test_an_element_that_is_struck_between_its_nodes_relaxes(when, quantity):
+    """It was not there: all of the largest value off for 11 samples."""
+    at = {"drive": ("z", 0.45), "force": rd.Impulse(0.1, time=when), "response": ("z", 0.48)}
+    asked = {"damping": rd.RayleighDamping(0.0, 3e-5), "how": {"elements": 8}, "quantity": quantity}
+    found, exact = moved(FAR, **at, **asked), moved(None, **at, **asked)
+    assert (found.cost.method, exact.cost.method) == ("events", "modal")
+    assert off(found, exact) < 1e-12
+    with pytest.raises(rd.SceneError, match="energy is not told where a blow at an instant hits"):
+        _ = found.energy
+
+
+@pytest.mark.parametrize(
+    "part", [FAR, FAINT, rd.Dashpot(0.375, 1e-9), rd.Dashpot(0.375, 1e-9, exponent=2.0)]
+)
+@pytest.mark.parametrize(
+    ("drive", "quantity", "response"),
+    [
+        (("z", 0.75), "acceleration", ("z", 0.75)),
+        (("end", 0, "z"), "displacement", ("F_z", 0.0)),
+        (("z", 0.7), "displacement", ("z", 0.7)),
+    ],
+)
+def test_a_jump_at_the_last_time_is_there(part, drive, quantity, response):
+    """Of events it was not: an acceleration of 63 where 263 is right."""
+    size = 5.0 if drive[0] == "z" else 0.002
+    force = (rd.Sine(size, 40.0), rd.Step(size, time=LAST))
+    asked = {"drive": drive, "force": force, "quantity": quantity, "response": response}
+    found, exact = moved(part, **asked), moved(None, **asked)
+    assert off(found, exact) < 1e-4  # measured: 1e-5 by the line
+    assert (np.abs(found.value - exact.value) <= found.error + exact.error).all()
+    before = moved(part, **(asked | {"force": force[0]}))
+    assert np.abs(found.value - before.value)[0, -1] > 0.05 * np.abs(exact.value).max()
+    assert np.abs(found.value - before.value)[0, :-1].max() < 1e-6 * np.abs(exact.value).max()
+
+
+@pytest.mark.parametrize("ulps", [1, 3, 10, 100, 10_000])
+def test_a_step_just_before_the_last_time_is_there(ulps):
+    """What modes do for so short a time was told as of one mode: 77 % off after one ulp."""
+    step = rd.Step(5.0, time=LAST - ulps * np.spacing(LAST))
+    asked = {"drive": ("z", 0.75), "force": (rd.Sine(5.0, 40.0), step), "quantity": "acceleration"}
+    found = moved(rd.Dashpot(0.375, 1e-9), rd.ViscousDamping(3.0), **asked)
+    exact = moved(None, rd.ViscousDamping(3.0), **asked)
+    assert (found.cost.method, exact.cost.method) == ("line", "modal")
+    assert (np.abs(found.value - exact.value) <= found.error + exact.error).all()
+
+
+@pytest.mark.parametrize("force", [0.1, 3.0])
+@pytest.mark.parametrize("when", [0.0, 0.01])
+def test_friction_holds_what_a_blow_elsewhere_does_not_move(force, when):
+    """Rounding of modes that cancel let it slip: an acceleration of 120 where 0 is right."""
+    friction = rd.Dashpot(0.25, force, exponent=0.0)
+    blow = {"drive": ("z", 0.75), "force": rd.Impulse(0.02, time=when), "response": ("z", 0.25)}
+    found = moved(friction, **blow, quantity="acceleration")
+    arrives = when + 1e-9 > TIME
+    assert found.cost.method == "events"
+    assert np.abs(found.value[0, arrives]).max() <= 1e-12 * np.abs(found.value).max()
+    # where it hits, friction slips at once
+    here = moved(friction, **(blow | {"drive": ("z", 0.25)}), quantity="acceleration")
+    assert here.value[0, when <= TIME][0] < -force
+
+
+@pytest.mark.parametrize("unit", [1e3, 1e-3, 1e-6])
+def test_a_stop_beside_friction_is_the_same_in_other_units_of_time(unit):
+    """Flexibilities and inverse masses were solved for as they are: 3 % off in microseconds."""
+
+    def followed(s):
+        parts = [rd.Stop(0.335, 18_820.0), rd.Dashpot(0.67, 3.7, exponent=0.0)]
+        scene = rd.Scene(rd.Rope(1.34, 0.171 * s * s), tension=2646.0, parts=parts)
+        seen = {
+            "drive": ("z", 0.335),
+            "force": rd.Step(20.0),
+            "response": [("z", 0.335), ("F_z", 0)],
+        }
+        return scene.compile(elements=6).transient(np.linspace(0.0, 0.03 * s, 150), **seen)
+
+    assert off(followed(unit), followed(1.0)) < 1e-12
+
+
+def test_a_stiff_stop_beside_friction_is_the_same_in_other_units_of_time():
+    """A wire of 0.6 m and 3 g: 2e-3 off, 3e-8 said."""
+
+    def followed(s):
+        parts = [rd.Stop(0.15, 1e11), rd.Dashpot(0.3, 0.5, exponent=0.0)]
+        scene = rd.Scene(rd.Rope(0.6, 0.005 * s * s), tension=700.0, parts=parts)
+        seen = {"drive": ("z", 0.15), "force": rd.Step(2.0), "response": [("z", 0.15), ("F_z", 0)]}
+        return scene.compile(elements=64).transient(np.linspace(0.0, 0.005 * s, 150), **seen)
+
+    one, other = followed(1.0), followed(1e3)
+    assert (np.abs(one.value - other.value) <= one.error + other.error).all()
+    assert off(one, other) < 1e-6
+
+
+@pytest.mark.parametrize("part", [FAINT, FAR])
+@pytest.mark.parametrize("span", [3e-4, 1e-4, 1e-5])
+def test_motion_that_has_hardly_begun_is_known_to_what_cancels(part, span):
+    """Beside a smooth law 1e-31 was said of 6e-20 where 3e-21 is right."""
+    time = np.linspace(0.0, span, 5)
+    asked = {"drive": ("z", 0.875), "force": rd.Sine(20.0, 100.0, phase=1.0), "time": time}
+    found = moved(part, **asked, response=("z", 0.25))
+    # five elements away it moves as the twelfth power of time: below what any of them tells
+    assert np.abs(found.value).max() <= found.error[0].min()
+    assert (
+        found.error.max() < 1e-7 * np.abs(moved(part, **asked, response=("z", 0.875)).value).max()
+    )
+
+
+@pytest.mark.parametrize(
+    "force", [rd.Step(10.0), rd.Sine(10.0, 50.0, phase=1.0), np.linspace(10.0, 3.0, 101)]
+)
+def test_a_force_that_is_there_at_first_has_worked_on_the_element_it_pushes(force):
+    """Of events it had not: a fifth of the largest kinetic energy was missing."""
+    asked = {"drive": ("z", 0.45), "force": force, "how": {"elements": 8}}
+    found, exact = moved(FAR, **asked).energy, moved(None, **asked).energy
+    assert exact["input"][0] > 0
+    for name, value in exact.items():
+        assert found[name] == pytest.approx(value, abs=1e-12 * exact["input"].max())
+    assert not found["laws"].any()
+
+
+def test_a_stop_that_is_pressed_at_first_has_taken_nothing_since():
+    """Events said what it stored, steps 0."""
+    pressed = rd.Stop(0.25, 1e4)
+    found = []
+    for more in [], [FAINT]:
+        scene = rd.Scene(STRING, tension=1000.0, parts=[pressed, rd.Dashpot(0.5, 2.0), *more])
+        found.append(
+            scene.compile(**PINNED).transient(TIME, start={("z", 0.25): 20.0}, response=("z", 0.25))
+        )
+    (by_events, by_steps), most = found, np.ptp(found[0].energy["laws"])
+    assert (by_events.cost.method, by_steps.cost.method) == ("events", "steps")
+    assert by_events.energy["laws"][0] == 0
+    for name, value in by_steps.energy.items():
+        assert by_events.energy[name] == pytest.approx(value, abs=1e-3 * most)
+
+
+@pytest.mark.parametrize("part", [None, rd.Dashpot(0.375, 1.0), FAINT, FAR])
+@pytest.mark.parametrize("end", [0, 1])
+def test_energy_is_not_told_where_an_end_is_moved(part, end):
+    """Beside dampers "tuple.index(x): x not in tuple"."""
+    history = moved(part, drive=("end", end, "z"), force=rd.Sine(0.01, 30.0), response=("z", 0.5))
+    with pytest.raises(rd.SceneError, match="energy is not told where an end is moved"):
+        _ = history.energy
