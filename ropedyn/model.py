@@ -536,7 +536,7 @@ class Model(Compiled):
             [Hz], each > 0, in any order.
         drive : point, such as ``("z", 0.5)`` or ``("end", 0, "z")``
         amplitude : float
-            Of a sine [N, N m; m, rad of an end].
+            Of a sine, from 1e-100 to 1e100 [N, N m; m, rad of an end].
         response : point or list of points, optional
         branches : bool
             Whether all branches between the lowest and the highest frequency are followed.

@@ -373,7 +373,7 @@ def test_values_on_a_steep_part_of_a_branch_are_known_at_their_frequency():
     branches = model.stepped_sine(np.linspace(28.0, 80.0, 12), **asked, branches=True)
     off = []
     for k in np.flatnonzero(np.abs(branches.frequency - 63.0) < 6.0)[::3]:
-        alone = model.stepped_sine([branches.frequency[k]], **asked, tolerance=1e-6)
+        alone = model.stepped_sine([branches.frequency[k]], **asked, tolerance=4e-6)
         apart = np.abs(branches.value[0, k] / alone.value[0, 0] - 1)
         if apart < 0.1:  # of the same branch
             off.append(apart / (branches.rounding_error[0, k] + alone.rounding_error[0, 0]))
@@ -402,7 +402,86 @@ def test_a_point_that_friction_holds_on_branches_does_not_move():
     assert not branches.value[0].any()
     assert not branches.rounding_error[0].any()
     assert branches.value[1].all()
-    assert branches.rounding_error[1].max() < 5e-4  # beside folds; measured: 2e-4
+    assert branches.rounding_error[1].max() < 2e-3  # beside folds; measured: 8e-4
+
+
+BESIDE_STOPS = {
+    "second change": (
+        2,
+        0.0114493609487628,
+        [
+            rd.Stop(0.5, 160.99405590212695, side=-1),
+            rd.Stop(0.5, 2184.735126161717, gap=0.009367118097985589, side=-1),
+        ],
+        np.linspace(5.279200202471012, 27.7582462046424, 60)[:24],
+        {},
+    ),
+    "first change": (
+        3,
+        0.03550734923510484,
+        [rd.Stop(2 / 3, 544.5071280798763, gap=0.0062777153744292494)],
+        np.array([16.70254146467317]),
+        {"tolerance": 1e-4},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BESIDE_STOPS)
+def test_harmonics_that_agree_by_chance_beside_stops_are_not_believed(name):
+    """Errors that were said were up to 71 times too small."""
+    elements, ratio, parts, frequency, how = BESIDE_STOPS[name]
+    damping = rd.ViscousDamping(2 * ratio * np.pi * np.sqrt(1000.0) * 0.1)
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping, parts=parts)
+    model = scene.compile(elements=elements, element="rigid")
+    nodes = [("z", x) for x in model.x[1:-1]]
+    asked = {"drive": ("z", 1 / elements), "amplitude": 1.0, "response": nodes}
+    found = model.stepped_sine(frequency, **asked, **how)
+    k = int(np.abs(frequency - 14.042218135520875).argmin())
+    push = np.eye(elements - 1)[0]
+    lumps = [rd.PointMass(one.x, 0.0) for one in parts]
+    free = scene.replace(parts=lumps).compile(elements=elements, element="rigid")
+    K, M, C = (
+        one().toarray() for one in (free.stiffness_matrix, free.mass_matrix, free.damping_matrix)
+    )
+    omega, at, n = 2 * np.pi * frequency[k], elements - 2, elements - 1
+
+    def moving(t, y):
+        force = push * np.cos(omega * t) - K @ y[:n] - C @ y[n:]
+        pressed = [p.stiffness * max(p.side * y[at] - p.gap, 0.0) * p.side for p in parts]
+        force[at] -= sum(pressed)
+        return np.append(y[n:], force / np.diag(M))
+
+    period = 1 / frequency[k]
+    how = {"rtol": 1e-12, "atol": 1e-15, "method": "DOP853", "max_step": period / 200}
+
+    def after(y):
+        return solve_ivp(moving, (0.0, period), y, **how).y[:, -1] - y
+
+    begin = np.concatenate([found.value[:, k].real, -omega * found.value[:, k].imag])
+    orbit = fsolve(after, begin, xtol=1e-12)
+    t = np.arange(256) / 256 * period
+    y = solve_ivp(moving, (0.0, t[-1]), orbit, t_eval=t, **how).y[at]
+    exact = 2 * (y * np.exp(-1j * omega * t)).mean()
+    off = np.abs(found.value[at, k] / exact - 1)
+    assert off <= found.rounding_error[at, k] <= 100 * off
+
+
+def test_folds_are_found_where_a_step_over_one_leads_nowhere():
+    """The first of four was not, and two branches were one."""
+    parts = [
+        rd.Stop(1 / 3, 74.68237653646493, gap=0.24217704992338776),
+        rd.NodeForce(2 / 3, lambda t, u, v: 645.714640581325 * u**3 - 977.195547261831 * u**5),
+    ]
+    damping = rd.ViscousDamping(2 * 0.002367875100514161 * np.pi * np.sqrt(1000.0) * 0.1)
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping, parts=parts)
+    model = scene.compile(elements=3, element="rigid")
+    asked = {"drive": ("z", 1 / 3), "amplitude": 1.0, "branches": True}
+    few, more = (model.stepped_sine([12.233883082586354, end], **asked) for end in (30.0, 38.921))
+    assert len(more.folds) == 4
+    assert more.folds == pytest.approx(few.folds, abs=few.fold_error.max() + more.fold_error.max())
+    for one in more:
+        step = np.diff(one.frequency)
+        assert (step > 0).all() or (step < 0).all()
 
 
 def test_one_frequency_has_no_branches():

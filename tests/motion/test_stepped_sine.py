@@ -206,6 +206,8 @@ def test_undamped_motion_has_no_steady_state(elements):
     [
         ({"frequency": [0.0]}, "frequency must be > 0"),
         ({"amplitude": 0.0}, "amplitude must be a finite number > 0"),
+        ({"amplitude": 1e-150}, r"amplitude must lie in 1e-100 ... 1e\+100 N, got 1e-150"),
+        ({"amplitude": 1e150}, r"amplitude must lie in 1e-100 ... 1e\+100 N, got 1e\+150"),
         ({"drive": [("z", 0.5), ("z", 0.2)]}, "drive must be one point"),
         ({"tolerance": -1.0}, "tolerance must be"),
     ],

@@ -23,6 +23,8 @@ from ...response.harmonic import mesh_of_frf
 from ...scene.damping import having
 from ..request import why_not_linear
 
+LEAST = 1e-100  # Of amplitudes: squares of motion are numbers.
+
 
 @dataclass(frozen=True, eq=False)
 class SteppedSine:
@@ -65,11 +67,17 @@ class SteppedSine:
                 "damping must be in proportion to velocity, such as StiffnessDamping(gamma) with "
                 f"gamma = eta/(2 pi frequency), got {one}: a loss factor has no meaning in time"
             )
+        unit = push_unit(drives[0])
+        pushes = check.number(amplitude, "amplitude", unit, sign="positive")
+        if not LEAST <= pushes <= 1 / LEAST:
+            raise SceneError(
+                f"amplitude must lie in {LEAST:g} ... {1 / LEAST:g} {unit}, got {pushes!r}"
+            )
         return cls(
             model,
             f,
             drives[0],
-            check.number(amplitude, "amplitude", push_unit(drives[0]), sign="positive"),
+            pushes,
             observed(model, response, drives),
             quantity,
             given,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from .driven import Driven
 from .state import HARMONICS, MOST, SteadyState, by_frequency, settled
 from .stepped import STEPS, at_rest, holding, pieces, slips, watched
 
+SWAPPED = 1e-6  # Neighbours that more harmonics swap are so close to each other, relative.
 SAME = 1e-3  # Motions at one frequency that differ by less are one, relative.
 
 
@@ -144,13 +146,24 @@ def solve_branches(asked: SteppedSine) -> Branches:
         while len(found) < len(ways) and (way := settled(driven, ways[len(found)])) is not None:
             found.append(way)
             asked.progress(len(found) / len(ways))
-        if len(found) == len(ways):
+        if len(found) == len(ways) and all(map(_is_in_order, found)):
             if any(slips(driven, way) for way in found):
                 raise SceneError("branches must be False where friction slips, got True")
             return _answer(driven, found)
         harmonics *= 2
         if 2 * harmonics > MOST:
             raise SolveError(f"{harmonics} harmonics do not tell where branches lead")
+
+
+def _is_in_order(way: list[SteadyState]) -> bool:
+    """Whether frequencies rise or fall from fold to fold, as where none was passed unseen."""
+    f = np.array([one.frequency for one in way])
+    ends = [k for k, one in enumerate(way) if one.kind == "fold"]
+    for begin, end in pairwise([0, *ends, len(f) - 1]):
+        steps = np.diff(f[begin : end + 1]) / f[begin]
+        if steps.min(initial=0.0) < -SWAPPED and steps.max(initial=0.0) > SWAPPED:
+            return False
+    return True
 
 
 def _refuse(driven: Driven) -> None:

@@ -180,26 +180,31 @@ class Driven:
         samples = np.fft.irfft(force, balance.samples, axis=1) * balance.samples
         return np.asarray(np.abs(samples).max(axis=1))
 
-    def responses(self, frequency: Real, push: Complex) -> tuple[Complex, Real]:
+    def responses(self, frequency: Real, push: Complex, off: Complex) -> tuple[Complex, Real]:
         """Return what is watched per amplitude, from the forces of points per amplitude.
 
-        push (points, f); value and error (responses, f), absolute.
+        push and how far each is off (points, f); value and error (responses, f), absolute.
         """
         m, h = len(self.points), len(self.held)
         pushed = [*self.points, *self.held, self.asked.drive]
         found = self._asked(frequency, pushed, list(self.asked.responses))
         push = np.concatenate([push, np.ones((1, len(frequency)))])
+        wrong = np.abs(np.concatenate([off, np.zeros((1, len(frequency)))]))
         if h:
             H = self.transfer.at(2 * np.pi * frequency)[:, m:]
-            grip = np.einsum("fhp,pf->hf", H, push)
-            push = np.concatenate([push[:m], grip, push[m:]])
+            grip, lost = (np.einsum("fhp,pf->hf", *one) for one in ((H, push), (np.abs(H), wrong)))
+            push, wrong = (
+                np.concatenate([one[:m], held, one[m:]])
+                for one, held in ((push, grip), (wrong, lost))
+            )
         share = found.value * push[:, None]
         known = found.rounding_limit
         if self.asked.model.element == "continuous":
             beside = np.where(found.value == 0, 0.0, found.mesh_error)
             known = known + beside * np.abs(found.value)
         moves = np.array([[one not in self.held] for one in self.asked.responses])
-        return moves * share.sum(axis=0), moves * (np.abs(push[:, None]) * known).sum(axis=0)
+        error = np.abs(push[:, None]) * known + np.abs(found.value) * wrong[:, None]
+        return moves * share.sum(axis=0), moves * error.sum(axis=0)
 
 
 def known_to(found: FRF) -> Real:

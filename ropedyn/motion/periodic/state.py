@@ -21,6 +21,9 @@ AHEAD = 1e-5  # Forces are looked at so much farther along a branch, in its step
 BENDS = 2.0  # Near a fold a frequency that is off by df moves along it by sqrt(BENDS df/SCALE f).
 TIMES = 4.0  # Steps of branches are off by so much more: where they are steep, all of it is seen.
 FALLS = 4.0  # Twice as many harmonics change a motion by so much less at most, as far as is known.
+CORNER = 1e-6  # Forces without corners have less than this part of them in the last harmonics.
+LEFT = 2.0  # They are off by so many times what the last ones change.
+TWICE = 2  # What others change by chance by nothing is told by so many changes.
 ALIKE = 0.1  # More harmonics that move a motion by more may have found another one.
 
 
@@ -38,6 +41,8 @@ class SteadyState(NamedTuple):
     """Of them, across the branch."""
     turns: bool = False  # whether it is near a fold, where frequencies tell little
     moved: float = 0.0  # how far they moved a step or fold [Hz]
+    doubled: int = 0  # how often there were twice as many
+    is_sure: bool = True  # whether what the last ones changed tells how far it is off
 
     @property
     def frequency(self) -> float:
@@ -73,7 +78,7 @@ def settled(driven: Driven, states: list[SteadyState]) -> list[SteadyState] | No
     force = _forces(states)
     unmoved = np.zeros(balance.points, dtype=np.complex128)
     found = [
-        one._replace(push=push, change=unmoved)
+        one._replace(push=push, change=unmoved, across=unmoved)
         for one, push in zip(states, _per_amplitude(balance, force))
     ]
     rough = np.flatnonzero(force.any(axis=(1, 2)))
@@ -96,7 +101,8 @@ def settled(driven: Driven, states: list[SteadyState]) -> list[SteadyState] | No
         for k, one in zip(rough.tolist(), finer):
             found[k] = one
         left = _felt(driven, finer)
-        rough, left = rough[left > tolerance], left[left > tolerance]
+        on = (left > tolerance) | ~np.array([one.is_sure for one in finer])
+        rough, left = rough[on], left[on]
     return found
 
 
@@ -125,9 +131,10 @@ def _finer(
                 return None
             places[k] = place
     finer = [one._replace(balance=balance, place=place) for one, place in zip(states, places)]
-    pushes, slopes = _per_amplitude(balance, _forces(finer)), _slopes(balance, finer)
+    force, slopes = _forces(finer), _slopes(balance, finer)
     found = []
-    for one, before, push, slope in zip(finer, states, pushes, slopes):
+    for one, before, harmonics, slope in zip(finer, states, force, slopes):
+        push, is_smooth = _per_amplitude(balance, harmonics), _is_smooth(harmonics)
         start = narrow.wider(before.place.x, balance.harmonics)
         if np.linalg.norm(one.place.x - start) > ALIKE * np.linalg.norm(start):
             return None
@@ -139,12 +146,26 @@ def _finer(
         change = across - slope * float(np.clip(back, -most, most))
         if one.kind != "asked":
             change, moved = TIMES * change, max(TIMES * moved, before.moved / FALLS)
-        if one.kind == "step":  # forces with corners fall by chance
-            chance = np.abs(before.change) > FALLS * np.abs(change)
-            change = np.where(chance, before.change / FALLS, change)
+        # forces with corners fall by chance
+        if one.kind == "step":
+            change = _by_chance(change, before.change)
+        elif one.kind == "asked" and not is_smooth:
+            change = LEFT * _by_chance(change, before.across)
         own = one._replace(push=push, change=change, across=across, moved=moved)
-        found.append(own._replace(turns=bool(abs(back) > most)))
+        own = own._replace(doubled=before.doubled + 1, turns=bool(abs(back) > most))
+        found.append(own._replace(is_sure=is_smooth or own.doubled >= TWICE))
     return found
+
+
+def _by_chance(change: Complex, before: Complex) -> Complex:
+    """Return changes, or where they are less by chance what they are at most as far as is known."""
+    return np.where(np.abs(before) > FALLS * np.abs(change), before / FALLS, change)
+
+
+def _is_smooth(force: Complex) -> bool:
+    """Whether the last harmonics of forces, (points, K + 1), are next to nothing."""
+    size = np.abs(force)
+    return bool((size[:, -(size.shape[1] // 4) :] <= CORNER * size.max()).all())
 
 
 def _wider(narrow: HarmonicBalance, place: Place, harmonics: int) -> Place:

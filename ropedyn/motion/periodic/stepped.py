@@ -56,9 +56,7 @@ def watched(driven: Driven, frequency: Real, states: list[SteadyState]) -> tuple
     if states:
         push = np.stack([state.push for state in states], axis=1)
         off = np.stack([state.change for state in states], axis=1)
-    value, error = driven.responses(frequency, push)
-    other, _ = driven.responses(frequency, push + off)
-    error = error + np.abs(other - value)
+    value, error = driven.responses(frequency, push, off)
     size = np.abs(value)
     relative = np.where(error == 0, 0.0, np.inf)
     return value, np.divide(error, size, out=relative, where=size > 0)
@@ -168,7 +166,8 @@ def at_rest(driven: Driven, balance: HarmonicBalance, frequency: float) -> Real:
     small = SMALL * float(np.linalg.norm(linear))
     nowhere = Place(np.zeros(0), FIRST, np.zeros(0), 0.0)
     for linearise, begin in (by_amplitude, FIRST * linear), (by_laws, linear):
-        x = _raised(Branch(linearise, nowhere, 1.0, small, str, step=0.25), begin, linear)
+        with np.errstate(all="ignore"):  # steps that lead out of all numbers are taken back
+            x = _raised(Branch(linearise, nowhere, 1.0, small, str, step=0.25), begin, linear)
         if x is not None:
             return x
     raise SolveError(f"frequency {frequency!r} Hz: no steady state was found on the way from rest")
@@ -282,10 +281,16 @@ class Path:
 def pieces(
     branch: Branch, *, enough: float = ENOUGH
 ) -> tuple[tuple[Place, Place], tuple[Place, Place] | None]:
-    """Take a step; return it, parted where the parameter turns."""
-    before = branch.place
-    after = branch.advance()
-    fold = branch.fold(before, after, enough=enough) if before.up * after.up < 0 else None
-    if fold is None:
-        return (before, after), None
-    return (before, fold), (fold, after)
+    """Take a step; return it, parted where the parameter turns.
+
+    One on which no steps lead to where it turns is taken back, and a shorter one is taken.
+    """
+    before, bend = branch.place, branch.bend
+    while True:
+        step, after = branch.step, branch.advance()
+        if before.up * after.up >= 0:
+            return (before, after), None
+        fold = branch.fold(before, after, enough=enough)
+        if fold is not None:
+            return (before, fold), (fold, after)
+        branch.place, branch.bend, branch.step = before, bend, step / 2
