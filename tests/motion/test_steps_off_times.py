@@ -174,3 +174,18 @@ def test_energy_of_a_blow_at_a_first_time_that_is_not_0():
     start = {("z", 0.25): -0.058}
     energy = beads(TENSION, rd.Stop(0.75, 2684.0)).transient(time, velocity=start, **asked).energy
     assert energy["input"][0] == pytest.approx((0.06**2 + 0.058**2) / (2 * MASS), rel=1e-9)
+
+
+@pytest.mark.parametrize("when", [5e-324, 1e-310, 1e-30])
+@pytest.mark.parametrize("stretching", [False, True])
+def test_a_break_just_after_the_first_time_is_one_at_it(when, stretching):
+    """Steps before it had no length: "invalid value encountered in divide"."""
+    cubic = rd.NodeForce(0.5, lambda t, u, v: -1e3 * u**3)
+    tension = rd.Tension(1000.0, stretching=stretching)
+    scene = rd.Scene(rd.Rope(1.0, 0.2, axial_stiffness=1e5), tension=tension, parts=[cubic])
+    model, time = scene.compile(elements=4), np.linspace(0.0, 0.01, 51)
+    late, soon = (
+        model.transient(time, drive=("z", 0.5), force=rd.Step(5.0, time=at)).value
+        for at in (when, 0.0)
+    )
+    assert late == pytest.approx(soon, abs=1e-12 * np.abs(soon).max())

@@ -21,6 +21,7 @@ ROWS = 4096  # and how so many places within a step are seen.
 TIMES, MORE = 3.0, 12.0  # The finer of two runs is off by so many times their distance at most, or
 # by so many over what half the step divides errors by, where that is little.
 FORGETS = 4.0  # What runs before were apart counts, this much less with each half of the step.
+SOON = 1e-15  # What breaks within this part of a run does so when it begins.
 SNAP = 1e-9  # Times closer to the end of a step than this part of it are there.
 
 
@@ -53,8 +54,9 @@ def steps_between(time: Real, breaks: Iterable[float], h: float) -> list[Steps]:
     if is_uniform(time):
         dt = float(time[-1] - time[0]) / (len(time) - 1)
         h = dt * math.floor(h / dt * (1 + SNAP)) if h >= dt else dt / math.ceil(dt / h)
-    inside = [at for at in breaks if time[0] < at < time[-1]]
-    edges = np.unique([float(time[0]), *inside, float(time[-1])])
+    first, last = float(time[0]), float(time[-1])
+    inside = [at for at in breaks if SOON * (last - first) < at - first < last - first]
+    edges = np.unique([first, *inside, last])
     near = SNAP * h
     found: list[Steps] = []
     for begin, end in zip(edges[:-1].tolist(), edges[1:].tolist()):
