@@ -17,6 +17,7 @@ from ..signal.spectrum import time_step
 from .force_spectrum import transform
 
 TAIL = 20  # The last of so many parts of a record says whether the motion has decayed.
+WITHIN = (0.1, 0.3, 0.5, 0.7, 0.9)  # So far between two breaks a force is looked at.
 SEEN = 2  # Samples show a blow that lasts for so many steps, and how they fold it.
 LEFT = 1e-6  # Less of the largest value counts as nothing.
 
@@ -84,13 +85,15 @@ def is_struck_between(force: Force, time: Real) -> bool:
     """Whether a blow lasts for less than `SEEN` steps, within the times."""
     if any(time[0] <= at <= time[-1] for at, _ in force.blows):
         return True
-    at = np.unique([one for one in force.breaks if time[0] <= one <= time[-1]])
-    step = time_step(time)
-    begin, end = (one[np.diff(at) < SEEN * step] for one in (at[:-1], at[1:]))
-    before, within, after = (
-        force.value(one) for one in (np.nextafter(begin, -np.inf), (begin + end) / 2, end)
-    )
-    return bool(((within - before) * (within - after) > 0).any())
+    first, last = float(time[0]), float(time[-1])
+    at = np.unique([first, *(one for one in force.breaks if first <= one <= last), last])
+    short = np.diff(at) < SEEN * time_step(time)
+    begin, end = at[:-1][short], at[1:][short]
+    beside = np.searchsorted(time, begin, side="right") - 1, np.searchsorted(time, end)
+    ends = np.stack([force.value(time[one]) for one in beside])
+    inside = force.value(begin + np.multiply.outer(WITHIN, end - begin))
+    over = np.maximum(inside - ends.max(axis=0), ends.min(axis=0) - inside)
+    return bool((over > LEFT * np.abs(inside)).any())
 
 
 def _at_the_end(time: Real, value: Real, force: Real) -> tuple[str, ...]:

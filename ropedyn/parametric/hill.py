@@ -28,9 +28,12 @@ EPS = float(np.finfo(float).eps)
 BEYOND = 12  # So many harmonics are added above the frequency of the stiffest mode,
 MORE = 2  # and this many times as many where that was not enough.
 OUTER = 1e-9  # The two outer harmonics on each side hold less than this part of a motion.
-INVERSE = 8  # So many steps of inverse iteration lead to two bands.
+INVERSE = 8  # So many steps of inverse iteration lead to the nearest bands.
 BESIDE = 1 + 1e-6  # Inverse iteration so far beside a band leaves the other one what it is.
 STEPS = 6  # So many lead to where two bands nearly meet,
+COUNTS = (4, 8, 16)  # So many are looked for, until one is no neighbour:
+APART = 1e-3  # farther away than this part of Omega^2.
+PAIRS = 2  # Two that meet are among so many to either side of the nearest.
 BENT = 30  # each of so many among the bands that lie together.
 SYMMETRIC = 1e-9  # Bands are flat at phases 0 and pi.
 MOVES = 1e-8  # Where a band is flat it lies so close to where it was looked for, in parts of it.
@@ -192,7 +195,14 @@ class _Bands(NamedTuple):
 
     @property
     def nearest(self) -> int:
+        """The one next to the period."""
         return int(np.abs(self.level).argmin())
+
+    @property
+    def beside(self) -> range:
+        """Those of which the next lower one may meet it there."""
+        last = len(self.level) - 1
+        return range(max(self.nearest - PAIRS, 0), min(self.nearest + PAIRS, last))
 
     def flat(self, number: int, beside: int | None = None) -> tuple[float, float] | None:
         """Return where a band is flat next to the phase: its level, and how far away.
@@ -215,13 +225,23 @@ class _Bands(NamedTuple):
 
 
 def _bands(hill: Hill, square: float, nu: float) -> _Bands:
-    """Return the bands next to Omega^2 at a phase in turns."""
+    """Return the bands next to Omega^2 at a phase in turns, all of those that lie together."""
+    most = 2 * len(hill.system.eigenvalue)
+    for count in (*(one for one in COUNTS if one < most), most):
+        found = _next_to(hill, square, nu, count)
+        if np.abs(found.level).max() > APART * square:
+            break
+    return found
+
+
+def _next_to(hill: Hill, square: float, nu: float, count: int) -> _Bands:
+    """Return so many bands next to Omega^2 at a phase, by inverse iteration."""
     from scipy.linalg import eigh
 
     k = len(hill.system.eigenvalue)
     rate = 1j * math.sqrt(square) * (hill.harmonic + nu)
     turning = np.repeat(hill.harmonic + nu, k)[:, None]
-    basis = np.random.default_rng(0).normal(size=(len(turning), 2 * k))
+    basis = np.random.default_rng(0).normal(size=(len(turning), count))
     for _ in range(INVERSE):
         basis = np.linalg.qr(hill.solve(BESIDE * rate, turning**2 * basis))[0]
     level, mixed = eigh(basis.T @ hill.times(rate, basis), basis.T @ (turning**2 * basis))
@@ -250,20 +270,20 @@ def _to_flat(level: Real, slope: Real, number: int, other: int) -> float | None:
     return float(half * tilt / r**2 + drift * gap / (r * math.sqrt(r * r - drift * drift)))
 
 
-def _enough(system: ModalSystem, amplitude: float, period: float, nu: float) -> Hill:
-    """Return Hill's matrix with harmonics enough for the bands next to a period and a phase."""
+def _enough(system: ModalSystem, amplitude: float, period: float, nu: float) -> tuple[Hill, _Bands]:
+    """Return Hill's matrix with harmonics enough, and its bands next to a period and a phase."""
     hill = Hill.of(system, amplitude, period)
     while True:
         bands = _bands(hill, (2 * np.pi / period) ** 2, nu)
         if hill.enough(bands.motion[:, [bands.nearest]]):
-            return hill
+            return hill, bands
         hill = hill.larger()
 
 
 def flat_band(system: ModalSystem, amplitude: float, period: float, phase: float) -> Flat:
     """Return where the band next to a period and a phase is flat."""
     nu, square = phase / (2 * np.pi), (2 * np.pi / period) ** 2
-    bands = _bands(_enough(system, amplitude, period, nu), square, nu)
+    _, bands = _enough(system, amplitude, period, nu)
     which = bands.nearest
     level = float(bands.level[which])
     # at phases 0 and pi by symmetry
@@ -276,11 +296,10 @@ def flat_band(system: ModalSystem, amplitude: float, period: float, phase: float
 def flat_pair(system: ModalSystem, amplitude: float, period: float, phase: float) -> Flat | None:
     """Return where two bands that nearly meet at a period and a phase are flat, if they are."""
     nu, square = phase / (2 * np.pi), (2 * np.pi / period) ** 2
-    hill = _enough(system, amplitude, period, nu)
+    hill, bands = _enough(system, amplitude, period, nu)
     for _ in range(STEPS):
-        bands = _bands(hill, square, nu)
         found = []
-        for upper in range(len(bands.level) - 1):
+        for upper in bands.beside:
             each = bands.flat(upper, upper + 1), bands.flat(upper + 1, upper)
             flats = [one for one in each if one is not None]
             if len(flats) == 2:
@@ -292,5 +311,6 @@ def flat_pair(system: ModalSystem, amplitude: float, period: float, phase: float
         if abs(step) <= SETTLED:
             break
         nu += step
+        bands = _bands(hill, square, nu)
     order = order_of(bands.rate, bands.motion[:, upper : upper + 2])
     return Flat(2 * np.pi / np.sqrt(square + level), order)

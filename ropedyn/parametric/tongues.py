@@ -18,6 +18,7 @@ from .decay import damped
 from .krein import NEUTRAL, Regions, Unstable, undamped
 from .monodromy import rates
 
+OUTSIDE = 3e-6  # Edges are looked for so far outside of a range, relative.
 HIGHEST_ORDER = 4  # Tongues up to this order are named.
 
 
@@ -131,7 +132,9 @@ class Boundary(Answer):
 def boundary(system: ModalSystem, low: float, high: float, amplitude: float) -> Boundary:
     """Return where stability changes between two frequencies at an amplitude."""
     first, last = 1 / high, 1 / low
-    found = [_found(system.only(block), first, last, amplitude) for block in system.blocks]
+    # what begins or ends where the range does is seen from outside
+    ends = first * (1 - OUTSIDE), last * (1 + OUTSIDE)
+    found = [_found(system.only(block), *ends, amplitude) for block in system.blocks]
     edge = [
         (1 / period, order)
         for one in _together([region for each in found for region in each.unstable])

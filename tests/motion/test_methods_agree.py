@@ -196,3 +196,51 @@ def test_energy_is_not_told_where_an_end_is_moved(part, end):
     history = moved(part, drive=("end", end, "z"), force=rd.Sine(0.01, 30.0), response=("z", 0.5))
     with pytest.raises(rd.SceneError, match="energy is not told where an end is moved"):
         _ = history.energy
+
+
+def test_a_step_at_the_last_time_beside_friction_at_rest_is_answered():
+    """It was refused after 15 s: what held was looked at for too short a time."""
+    last = 0.03700412748229481
+    time = np.linspace(0.0, last, 69)
+    parts = [rd.Dashpot(1 / 2, 2.74, exponent=0.0), rd.Dashpot(2 / 3, 27.68, exponent=0.0)]
+    scene = rd.Scene(STRING, tension=1000.0, parts=[*parts, rd.Dashpot(1 / 3, 4.53)])
+    model = scene.compile(elements=6, element="rigid")
+    half = last - 0.023122368784884547
+    blow = rd.Impulse(-0.148, time=last - half, duration=half)
+    asked = {"drive": [("z", 2 / 3), ("z", 1 / 3)], "force": [blow, rd.Step(10.0, time=last)]}
+    seen = {"response": [("z", 1 / 3), ("z", 1 / 2)], "quantity": "acceleration"}
+    found = model.transient(time, **asked, **seen)
+    assert found.cost.method == "events"
+    assert found.value[0, -1] == pytest.approx(10.0 / (0.2 / 6), rel=1e-12)
+    assert np.abs(found.value[1]).max() < 1e-9
+
+
+@pytest.mark.parametrize("begin", [1e3, 1e6])
+def test_a_jump_at_the_last_time_is_there_however_late(begin):
+    time = begin + TIME
+    force = (rd.Sine(5.0, 40.0), rd.Step(5.0, time=float(time[-1])))
+    asked = {"drive": ("z", 0.75), "force": force, "quantity": "acceleration", "time": time}
+    found, exact = moved(FAR, **asked), moved(None, **asked)
+    assert found.value[0, -1] == pytest.approx(exact.value[0, -1], rel=1e-6)
+
+
+@pytest.mark.parametrize("mass", [60.0, 100.0])
+def test_a_mass_that_holds_a_law_apart_is_no_flexibility(mass):
+    """Rounding was, of no mode: "cannot convert float NaN to integer"."""
+    parts = [rd.PointMass(0.5, mass), rd.NodeForce(0.25, lambda t, u, v: -1e-9 * u**3)]
+    asked = {"drive": ("z", 0.75), "force": rd.Sine(5.0, 40.0), "response": ("z", 0.75)}
+    found, exact = (
+        rd.Scene(STRING, tension=1000.0, parts=some).compile(**PINNED).transient(TIME, **asked)
+        for some in (parts, parts[:1])
+    )
+    assert off(found, exact) < 1e-9
+
+
+@pytest.mark.parametrize("begin", [0.0, 100.0])
+def test_a_short_blow_between_nodes_puts_in_what_moves(begin):
+    """Of what the element takes and gives back rounding of the times left 216 J of 0.02 J."""
+    blow = rd.Impulse(0.0625, time=begin + 0.005, duration=2e-8)
+    asked = {"drive": ("z", 0.45), "force": blow, "time": begin + TIME, "response": ("z", 0.5)}
+    found = moved(FAR, **asked).energy
+    stored = found["kinetic"] + found["strain"]
+    assert found["input"][-1] == pytest.approx(stored[-1], rel=1e-4)  # 2e-6 of rounded times

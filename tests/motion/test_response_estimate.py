@@ -207,6 +207,9 @@ def test_what_follows_a_blow_between_two_times_at_once_is_refused(duration, quan
     at = {"drive": ("z", 0.42), "force": [blow, rd.Step(0.0)], "quantity": quantity}
     with pytest.raises(rd.SceneError, match="where a blow between two times hits"):
         model.transient(time, **at).frf()
+    for hidden in (rd.Step(0.0, time=0.0101 + duration / 2), rd.Chirp(1.0, 1e4, 1.2e5, 4e-6)):
+        with pytest.raises(rd.SceneError, match="where a blow between two times hits"):
+            model.transient(time, **(at | {"force": [blow, hidden]})).frf()
     # those that last are seen, and what is elsewhere
     model.transient(time, **(at | {"force": rd.Impulse(0.01, time=0.01, duration=2e-3)})).frf()
     model.transient(time, **at, response=("z", 0.75)).frf()

@@ -159,6 +159,25 @@ def test_tongues_of_modes_alike_are_as_wide_as_they_grow():
     assert np.abs(found[:, [0, 4]]).max() < 1e-12
 
 
+@pytest.mark.parametrize("beyond", [0.0, 1e-12, 1e-9, 1e-7])
+@pytest.mark.parametrize("amplitude", [1e-3, 0.1])
+def test_a_tongue_that_ends_where_the_range_does_is_found(amplitude, beyond):
+    """It was missed, and proved to be none."""
+    low, high = 0.9 / np.pi, 1.1 / np.pi
+    whole = boundary(ONE, low, high, amplitude)
+    begin, end = whole.frequency
+    above = boundary(ONE, low, end * (1 + beyond), amplitude)
+    below = boundary(ONE, begin * (1 - beyond), high, amplitude)
+    assert above.proved
+    assert below.proved
+    # edges lie between the ends, to rounding
+    least = 1 if beyond == 0 else 2
+    assert least <= len(above.frequency) <= 2
+    assert least <= len(below.frequency) <= 2
+    assert above.frequency[0] == pytest.approx(begin, rel=1e-14)
+    assert below.frequency[-1] == pytest.approx(end, rel=1e-14)
+
+
 def test_modes_that_do_not_couple_pass_without_a_tongue():
     """f1 + f2 of a system without Gamma_12 is counted, and has no width."""
     coupled = ModalSystem(

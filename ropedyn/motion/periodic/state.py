@@ -226,5 +226,5 @@ def _felt(driven: Driven, states: list[SteadyState]) -> Real:
         if one.turns:  # `fold_error` tells how far its frequency is off
             change[k] = one.across
     motion = np.einsum("fip,fp->fi", H[..., :-1], push) + H[..., -1]
-    moved = np.einsum("fip,fp->fi", H[..., :-1], change)
-    return np.asarray(np.abs(moved).max(axis=1) / np.abs(motion).max(axis=1))
+    moved = np.einsum("fip,fp->fi", np.abs(H[..., :-1]), np.abs(change))
+    return np.asarray(moved.max(axis=1) / np.abs(motion).max(axis=1))

@@ -31,7 +31,7 @@ FAINT = 1e-14  # Motion with less than this part of the energy is not resolved.
 
 
 class _Seen(NamedTuple):
-    """A component at times of a visit."""
+    """A component at times since the start of a visit."""
 
     q: Real
     v: Real
@@ -81,7 +81,7 @@ def _component(run: Run, one: Moving) -> Real:
         done = gone[:, -1]
         i, j = np.searchsorted(run.time, [visit.start, visit.stop])
         j += int(visit.stop >= run.time[-1])
-        at = np.minimum(np.searchsorted(edges, run.time[i:j]), len(edges) - 1)
+        at = np.minimum(np.searchsorted(edges, run.time[i:j] - visit.start), len(edges) - 1)
         result[:2, i:j], result[4, i:j] = stored[:2, at], stored[2, at] - pressed
         result[2:4, i:j] = gone[:, at]
     return result
@@ -100,11 +100,12 @@ def _refuse_infinite(one: Moving, forces: list[Force], time: Real) -> None:
 
 
 def _edges(one: Moving, visit: Visit, time: Real) -> Real:
-    """Return the times of a visit, with so many between that its motion is resolved."""
-    inside = time[(time > visit.start) & (time < visit.stop)]
-    soon = visit.start + one.system.states.gamma * RELAXED * one.system.late
-    soon = soon[(soon > visit.start) & (soon < visit.stop)]
-    edges = np.unique(np.concatenate([[visit.start], soon, inside, [visit.stop]]))
+    """Return the times of a visit since its start, so many that its motion is resolved."""
+    lasts = visit.stop - visit.start
+    soon = one.system.states.gamma * RELAXED * one.system.late
+    inside = np.concatenate([soon, time - visit.start])
+    inside = inside[(inside > 0) & (inside < lasts)]
+    edges = np.unique(np.concatenate([[0.0], inside, [lasts]]))
     rate, own = np.abs(visit.phase.poles.rate), visit.driven.own
     right = visit.phase.poles.right[: visit.phase.matrices.E.shape[1]]
     size = np.abs(right * own).max(axis=0, initial=0.0)
@@ -118,13 +119,13 @@ def _edges(one: Moving, visit: Visit, time: Real) -> Real:
     return np.append(first + number * step, edges[-1])
 
 
-def _look(one: Moving, visit: Visit, time: Real) -> _Seen:
-    system, since = one.system, time - visit.start
+def _look(one: Moving, visit: Visit, since: Real) -> _Seen:
+    system = one.system
     state, seen = visit.state(), visit.outputs
     k, laws = system.states.modes, len(system.laws.points)
     x, y = state.at(since), seen.at(since)
     speed = seen.derivative().some(slice(0, system.responses + laws)).at(since)
-    given = np.zeros((system.first, len(time)))
+    given = np.zeros((system.first, len(since)))
     given[: system.drives] = visit.driven.push.at(since)  # at its end what acts until then
     force = np.concatenate([given, y[system.responses + laws :]])
     slow = state.derivative().some(slice(2 * k, None)).at(since)
@@ -133,7 +134,7 @@ def _look(one: Moving, visit: Visit, time: Real) -> _Seen:
 
 def _at_rest(one: Moving, visit: Visit) -> _Seen:
     """Look at the start of the first visit before anything drives."""
-    seen, system = _look(one, visit, np.array([visit.start])), one.system
+    seen, system = _look(one, visit, np.zeros(1)), one.system
     push = visit.driven.push.at(np.zeros(1))
     y = visit.phase.matrices.Dd @ push
     force = np.concatenate([push, np.zeros((system.loads, 1)), y[len(seen.u) :]])

@@ -63,7 +63,7 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
             # of components that were not followed nothing is known
             until = reached if one is components[-1] else float(run.time[0])
             break
-        events += [at for at, _ in walk.events if at <= run.time[-1]]
+        events += [at for at, _ in walk.events]
         whole = whole and not np.isfinite(one.system.states.beyond)
     return Followed(seen, sizes, sorted(events), whole, modes, until)
 

@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Complex, Real
-from ...base.check import NEAR
 from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
 from .driven import Forcing
+
+ROUND = 1e-6  # A force that changes by less of itself in an ulp does not jump.
 
 
 class ForcePiece(NamedTuple):
@@ -29,14 +30,12 @@ def pieces(forces: Sequence[Force], time: Real, factor: float = 1.0) -> Iterator
     first, last = float(time[0]), float(time[-1])
     each = [list(_flat(force)) for force in forces]
     cuts = {first, last}
-    if any(at == last for some in each for one in some for at in one.breaks):
-        cuts.add(
-            last + NEAR * (last - first)
-        )  # what jumps at the last time has its value from then
     for one in (one for some in each for one in some):
         inner = one.time.tolist() if isinstance(one, Samples) else one.breaks
         cuts.update(t for t in (*inner, *(at for at, _ in one.blows)) if first < t < last)
-    order = np.array(sorted(cuts))
+    # what jumps at the last time has its value from then on
+    ends = [last] if any(_jumps(one, last) for some in each for one in some) else []
+    order = np.array([*sorted(cuts), *ends])
     start, middle = order[:-1], (order[:-1] + order[1:]) / 2
     level, slope = (factor * one for one in _straight(each, start, middle))
     for k, (begin, end) in enumerate(pairwise(order.tolist())):
@@ -44,6 +43,14 @@ def pieces(forces: Sequence[Force], time: Real, factor: float = 1.0) -> Iterator
         rate, wave = _waves(each, begin, float(middle[k]))
         push = Forcing(rate, factor * wave, level[:, k], slope[:, k])
         yield ForcePiece(begin, end, push, factor * np.array(kick, dtype=np.float64))
+
+
+def _jumps(force: Force, when: float) -> bool:
+    """Whether a force is another one from a time on."""
+    if when not in force.breaks:
+        return False
+    before, after = force.value(np.array([np.nextafter(when, -np.inf), when]))
+    return bool(abs(after - before) > ROUND * max(abs(after), abs(before)))
 
 
 def is_chirp(force: Force) -> bool:

@@ -109,6 +109,9 @@ class PhaseWalk:
         for piece in pieces:
             if piece.kick.any():
                 now, mode = self._struck(now, mode, piece)
+            if piece.start == piece.stop:
+                yield self._instant(now, mode, piece)
+                return
             time, forcing, crowd = piece.start, piece.push, 0
             while time < piece.stop:
                 phase, driven = self._enter(now, mode, forcing, piece.stop - time)
@@ -133,6 +136,22 @@ class PhaseWalk:
                 now, mode = self._changed(
                     now, mode, law=law, guard=event.which, outputs=outputs, time=last
                 )
+
+    def _instant(self, now: Instant, mode: tuple[int, ...], piece: ForcePiece) -> Visit:
+        """Return the phase that begins at the last time, and what is there then."""
+        for _ in range(AT_ONCE):
+            phase, driven = self._enter(now, mode, piece.push, self.system.span)
+            whole = phase.outputs(driven)
+            outputs = whole.some(slice(self.system.responses, None))
+            scale = self._scale(phase, driven, mode)
+            event = self._guards(mode, outputs).first_crossing(scale, INSTANT * self.system.span)
+            if event is None or event.time > 0:
+                break
+            law = self._law(mode, event.which)
+            now, mode = self._changed(
+                now, mode, law=law, guard=event.which, outputs=outputs, time=0.0
+            )
+        return Visit(piece.start, piece.stop, phase, driven, whole, now.hold)
 
     def _first(self, start: Instant) -> tuple[int, ...]:
         """Return the phase before the first event: stops that are met, friction that holds."""

@@ -209,9 +209,9 @@ def _cancelled(found: Agreed, system: LawSystem, tolerance: float) -> Agreed:
     lost = ROUNDING * size > tolerance * most
     if lost.any():
         found.error = SolveError(
-            f"motion has hardly begun: of modes that cancel rounding leaves up to "
-            f"{(ROUNDING * size[lost] / most[lost]).max():.1e} of it, not {tolerance:g}. A later "
-            "time helps"
+            f"of modes that cancel rounding leaves up to "
+            f"{(ROUNDING * size[lost] / most[lost]).max():.1e} of the motion, not {tolerance:g}: "
+            "it has hardly begun, or a mass holds it"
         )
     return found
 

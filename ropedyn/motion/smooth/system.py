@@ -135,7 +135,9 @@ def shifted(rows: slice, by: int) -> slice:
 def oscillating(found: States, laws: int) -> Oscillating:
     """Return the modes as laws push them; what is left out follows as a mode of its lowest."""
     count, inputs = found.modes, slice(laws)
-    now, late = found.now[:, inputs], found.late[:, inputs]
+    # of all modes only rounding is left
+    now = found.now[:, inputs] * np.isfinite(found.beyond)
+    late = found.late[:, inputs]
     lag = 1 / found.gamma if found.gamma else 0.0
     beyond = found.beyond if now.any() else 0.0
     more = laws * (bool(now.any()) + bool(late.any()))
