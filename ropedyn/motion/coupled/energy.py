@@ -14,10 +14,9 @@ from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...chain.port import Point, local, locate, moving
 from ...eigen.damped.rates import Rates, elastic
-from ...response.moved_end import is_end
 from ..acting import scene_laws
 from ..history import Balance, History
-from ..modal.energy_balance import DrivenModes
+from ..modal.energy_balance import DrivenModes, refuse_moved_ends
 from ..moved import Moved
 from ..request import TOLERANCE, Run
 from ..smooth.passage import Runs, Steps, reach
@@ -35,8 +34,7 @@ Solve = Callable[[Run], History | Moved]
 
 def balance(run: Run, solve: Solve | None = None) -> Balance:
     """Return the energies at the times of a run on a chain; `solve` tells motion exactly."""
-    if any(map(is_end, run.places)):
-        raise SceneError("energy is not told where an end is moved")
+    refuse_moved_ends(run)
     total = np.zeros((len(NAMES), len(run.time)))
     for component in run.model.components:
         total[:4] += _inside_elements(run, component)

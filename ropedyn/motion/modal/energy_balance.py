@@ -46,8 +46,7 @@ MOST = 1 << 21  # So many numbers are computed at a time.
 
 def balance(run: Run, resolved: float) -> Balance:
     """Return the energies over time."""
-    if any(map(is_end, run.drives)):
-        raise SceneError("energy is not told where an end is moved")
+    refuse_moved_ends(run)
     energy = {name: np.zeros(len(run.time)) for name in NAMES}
     shares = expand(
         run.model, run.places, run.places, modes=run.modes, resolved=resolved, bound=False
@@ -56,6 +55,19 @@ def balance(run: Run, resolved: float) -> Balance:
         for name, part in zip(NAMES, DrivenModes.of(run, share).energies()):
             energy[name] += part
     return Balance(energy)
+
+
+def refuse_moved_ends(run: Run) -> None:
+    """Refuse motion of ends, which no force of a drive tells the work of."""
+    if any(map(is_end, run.drives)):
+        raise SceneError("energy is not told where an end is moved")
+
+
+def divided(edges: Real, parts: Index) -> tuple[Real, Real]:
+    """Return where pieces begin and how long they are, so many between two edges each."""
+    step = np.repeat(np.diff(edges) / parts, parts)
+    number = np.arange(len(step)) - np.repeat(np.cumsum(parts) - parts, parts)
+    return np.repeat(edges[:-1], parts) + step * number, step
 
 
 def tells_energy(run: Run) -> bool:
@@ -197,9 +209,7 @@ class DrivenModes:
         edges = self._edges(group.decay)
         fastest = max([group.rate, *(2 * math.pi * force.highest for force in self._forces)])
         parts = np.ceil(np.diff(edges) * fastest / RADIANS).astype(np.intp) + 1
-        step = np.repeat(np.diff(edges) / parts, parts)
-        first = np.repeat(np.cumsum(parts) - parts, parts)
-        begin = np.repeat(edges[:-1], parts) + step * (np.arange(len(step)) - first)
+        begin, step = divided(edges, parts)
         node, weight = np.polynomial.legendre.leggauss(NODES)
         sums = np.zeros(len(step))
         most = max(1, MOST // (NODES * BLOCK * max(len(self.given), 1)))

@@ -15,9 +15,9 @@ import numpy as np
 
 from ...base.array import Real
 from ...base.errors import SceneError
-from ...response.moved_end import is_end
 from ...scene.force import Force
 from ..history import Balance
+from ..modal.energy_balance import divided, refuse_moved_ends
 from ..request import Run
 from .components import Look, Moving, moving_components, rest
 from .pieces import pieces
@@ -44,8 +44,7 @@ class _Seen(NamedTuple):
 
 def balance(run: Run, modes: int) -> Balance:
     """Return the energies at the times of a run."""
-    if any(map(is_end, run.drives)):
-        raise SceneError('energy is not told where an end is moved and the method is "events"')
+    refuse_moved_ends(run)
     points = (*run.drives, *run.loads)
     asked = replace(run, responses=points, order=0)
     total = np.zeros((len(NAMES), len(run.time)))
@@ -112,11 +111,8 @@ def _edges(one: Moving, visit: Visit, time: Real) -> Real:
     share = (rate * size) ** 2
     fast = rate[share > FAINT * share.max(initial=0.0)].max(initial=0.0)
     fast = max(fast, np.abs(visit.driven.push.rate).max(initial=0.0))
-    parts = np.maximum(1, np.ceil(np.diff(edges) * fast / TURN)).astype(int)
-    step = np.repeat(np.diff(edges) / parts, parts)
-    first = np.repeat(edges[:-1], parts)
-    number = np.arange(len(step)) - np.repeat(np.cumsum(parts) - parts, parts)
-    return np.append(first + number * step, edges[-1])
+    parts = np.maximum(1, np.ceil(np.diff(edges) * fast / TURN)).astype(np.intp)
+    return np.append(divided(edges, parts)[0], edges[-1])
 
 
 def _look(one: Moving, visit: Visit, since: Real) -> _Seen:

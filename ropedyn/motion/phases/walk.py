@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.array import Complex, Real
 from ...base.errors import SolveError
-from .course import Course
+from .course import Course, Crossing
 from .driven import Forcing, UnderDrives, drive
 from .phase import Matrices, PhaseSystem, matrices
 from .pieces import ForcePiece
@@ -114,12 +114,12 @@ class PhaseWalk:
                 return
             time, forcing, crowd = piece.start, piece.push, 0
             while time < piece.stop:
-                phase, driven = self._enter(now, mode, forcing, piece.stop - time)
+                left = piece.stop - time
+                phase, driven = self._enter(now, mode, forcing, left)
                 whole = phase.outputs(driven)
                 outputs = whole.some(slice(self.system.responses, None))
-                guards, scale = self._guards(mode, outputs), self._scale(phase, driven, mode)
-                event = guards.first_crossing(scale, piece.stop - time)
-                last = piece.stop - time if event is None else event.time
+                event = self._event(phase, driven, outputs, left)
+                last = left if event is None else event.time
                 if last > 0:
                     # what lasts to the end of a piece ends there, to the last digit
                     stop = piece.stop if event is None else time + last
@@ -130,7 +130,7 @@ class PhaseWalk:
                 law = self._law(mode, event.which)
                 crowd = 0 if last > INSTANT * self.system.span else crowd + 1
                 if crowd > AT_ONCE:
-                    raise SolveError(f"stops and friction find no lasting phase at t = {time:g} s")
+                    raise _unsettled(time)
                 time, forcing = time + last, _later(forcing, last)
                 self.events.append((time, law))
                 now, mode = self._changed(
@@ -143,15 +143,14 @@ class PhaseWalk:
             phase, driven = self._enter(now, mode, piece.push, self.system.span)
             whole = phase.outputs(driven)
             outputs = whole.some(slice(self.system.responses, None))
-            scale = self._scale(phase, driven, mode)
-            event = self._guards(mode, outputs).first_crossing(scale, INSTANT * self.system.span)
+            event = self._event(phase, driven, outputs, INSTANT * self.system.span)
             if event is None or event.time > 0:
-                break
+                return Visit(piece.start, piece.stop, phase, driven, whole, now.hold)
             law = self._law(mode, event.which)
             now, mode = self._changed(
                 now, mode, law=law, guard=event.which, outputs=outputs, time=0.0
             )
-        return Visit(piece.start, piece.stop, phase, driven, whole, now.hold)
+        raise _unsettled(piece.start)
 
     def _first(self, start: Instant) -> tuple[int, ...]:
         """Return the phase before the first event: stops that are met, friction that holds."""
@@ -183,6 +182,13 @@ class PhaseWalk:
         x = (phase.poles.right @ driven.at(time)).real
         q, v = m.E @ x[:n] + m.b @ now.hold, m.E @ x[n : 2 * n]
         return Instant(q, v, x[2 * n :], now.hold)
+
+    def _event(
+        self, phase: Phase, driven: UnderDrives, outputs: Course, end: float
+    ) -> Crossing | None:
+        """Return what ends a phase first, if something does."""
+        guards = self._guards(phase.mode, outputs)
+        return guards.first_crossing(self._scale(phase, driven, phase.mode), end)
 
     def _guards(self, mode: tuple[int, ...], outputs: Course) -> Course:
         """Return what stays above zero while the phase lasts."""
@@ -264,6 +270,11 @@ class PhaseWalk:
             if not soft[k] and abs(push @ kick) > UNMOVED * (np.abs(push) @ np.abs(kick)):
                 new[k] = int(np.sign(push @ v))
         return now._replace(v=v, e=e), tuple(new)
+
+
+def _unsettled(time: float) -> SolveError:
+    """Return what is said where events at once do not end."""
+    return SolveError(f"stops and friction find no lasting phase at t = {time:g} s")
 
 
 def _scaled(course: Course, factor: float, shift: float) -> Course:
