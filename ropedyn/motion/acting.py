@@ -16,6 +16,7 @@ from ..scene.parts.part import standing
 from ..scene.scene import Scene
 
 KINDS = ("power", "stop", "call")  # in the order of csrc/law/law.h
+SLIPS = 1e-3  # Friction may slip where a force is less by this part of it.
 NUMBERS = 4  # of a law at most, RD_LAW_VALUES there
 
 
@@ -57,6 +58,15 @@ def acting_laws(model: Compiled, coordinates: Collection[str] | None = None) -> 
     place, on = (model.x, model.coordinates), coordinates or model.coordinates
     some = [one for one in scene_laws(model.scene) if one.point[0] in on]
     return [one for one in some if not is_held(model.chain, *place, one.point)]
+
+
+def held_points(laws: Sequence[ActingLaw], force: Real) -> set[Point]:
+    """Return what friction holds that never slips: forces of laws have been so large at most."""
+    points = set[Point]()
+    for one, largest in zip(laws, force):
+        if one.is_friction and one.law.value[1] == 0 and largest < (1 - SLIPS) * one.law.value[0]:
+            points.add(one.point)
+    return points
 
 
 def core_numbers(laws: Sequence[Law]) -> tuple[NDArray[np.int32], Real]:

@@ -23,14 +23,14 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..base.answer import Cost
-from ..base.array import Real
+from ..base.array import Flags, Real
 from ..base.computed import changed, computed
 from ..base.errors import SolveError
 from ..base.progress import silent
 from ..chain.compiled import Compiled
 from ..chain.port import Point
 from ..scene.force import Samples, Step
-from .acting import acting_laws, core_numbers
+from .acting import ActingLaw, acting_laws, core_numbers, held_points
 from .coupled.energy import of_chain
 from .history import History, ended_by
 from .line.grid import is_even
@@ -40,7 +40,7 @@ from .moved import Moved, against_spans
 from .request import TOLERANCE, Run
 from .smooth.laws import LawFailure, SmoothLaw
 from .smooth.passage import Runs
-from .smooth.smooth import scale
+from .smooth.smooth import allowed
 
 FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, of a second run at least and at most, or
 RUNS = 6  # so many times those of the first: three runs.
@@ -56,11 +56,10 @@ NONE = np.zeros(0)
 class CoreActing(NamedTuple):
     """The laws of a model where something moves, as the core takes them."""
 
-    points: tuple[Point, ...]
+    acting: list[ActingLaw]
     told: list[SmoothLaw]  # as messages name them
     kind: NDArray[np.int32]
     value: Real
-    is_sharp: bool  # whether some bend or jump where contact begins or velocities turn
 
     @classmethod
     def of(cls, model: Compiled) -> CoreActing:
@@ -68,9 +67,17 @@ class CoreActing(NamedTuple):
         found = acting_laws(model)
         told = [SmoothLaw(one.name, one.law.call) for one in found]
         numbers = core_numbers([one.law for one in found])
-        return cls(
-            tuple(one.point for one in found), told, *numbers, any(one.is_sharp for one in found)
-        )
+        return cls(found, told, *numbers)
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Where they act."""
+        return tuple(one.point for one in self.acting)
+
+    @property
+    def is_sharp(self) -> bool:
+        """Whether some bend or jump where contact begins or velocities turn."""
+        return any(one.is_sharp for one in self.acting)
 
     @property
     def core(self) -> tuple[NDArray[np.int32], Real, tuple[Callable[..., Any] | None, ...]]:
@@ -150,6 +157,12 @@ class Stepped:
         except STOPS as error:
             raise Ended(error, float(self.time[made])) from error
         return force
+
+    @property
+    def held(self) -> Flags:
+        """Which responses friction holds all the time."""
+        points = held_points(self.laws.acting, np.abs(self.force).max(axis=1))
+        return np.array([point in points for point in self.run.responses], dtype=np.bool_)
 
     def _error(self, failure: Any, when: float, residual: float) -> BaseException:
         if failure is not None:
@@ -239,14 +252,14 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
             before = coarse[1]
             both = runs.apart(found.value, before.value, FALLS)
             known = found._replace(error=found.error + TIMES * both)
-            most = tolerance * scale(found.value)[:, None]
+            most = allowed(found.value, tolerance, held=stepped.held)[:, None]
             if (known.error <= most).all():
                 return stepped, known, None
             # shorter steps do not help where linear motion is not known
             if more > most_steps or (np.minimum(found.error, before.error) > most).any():
                 seen = np.where(np.isfinite(both), both, runs.kept)
                 known = found._replace(error=found.error + TIMES * seen)
-                raise _unknown(run, tolerance, count, known)
+                raise _unknown(run, tolerance, count, known, most)
         count, coarse = more, (stepped, found)
 
 
@@ -267,8 +280,8 @@ def _first(run: Run) -> int:
     return steps if steps % 2 else steps // 2
 
 
-def _unknown(run: Run, tolerance: float, count: int, known: Moved) -> SolveError:
-    late = (known.error > tolerance * scale(known.value)[:, None]).any(axis=0)
+def _unknown(run: Run, tolerance: float, count: int, known: Moved, most: Real) -> SolveError:
+    late = (known.error > most).any(axis=0)
     until = float(run.time[max(int(late.argmax()) - 1, 0)])
     return SolveError(
         f"the motion is known to {tolerance:g} of its largest value until t = {until:.4g} s only: "

@@ -152,6 +152,42 @@ def test_friction_holds_what_is_pushed_too_little():
     assert np.abs(history.value).max() < 1e-15 * AMPLITUDE
 
 
+@pytest.mark.parametrize(
+    ("quantity", "tolerance"), [("displacement", 1e-6), ("velocity", 1e-3), ("velocity", 1e-2)]
+)
+def test_what_friction_holds_beside_a_smooth_law_is_at_rest_as_on_a_support(quantity, tolerance):
+    def moved(part, tolerance):
+        parts = [part, rd.Dashpot(0.75 * LENGTH, 2.0, exponent=2.0)]
+        scene = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION, parts=parts)
+        model = scene.compile(elements=4, element="rigid")
+        nodes = [("z", float(x)) for x in model.x[1:-1]]
+        force = {"drive": MIDDLE, "force": rd.Sine(1.0, 3 / PERIOD), "response": nodes}
+        return model.transient(TIME, **force, quantity=quantity, tolerance=tolerance)
+
+    held = moved(rd.Dashpot(LENGTH / 4, 50.0, exponent=0.0), tolerance)
+    still = moved(rd.Support(LENGTH / 4), 1e-8)
+    assert held.cost.method == "steps"
+    assert not still.value[0].any()
+    assert (np.abs(held.value - still.value) <= held.error + still.error).all()
+    largest = np.abs(still.value).max(axis=1)
+    assert (held.error[1:].max(axis=1) <= tolerance * largest[1:]).all()
+    assert held.error[0].max() <= tolerance * largest.max()
+
+
+def test_what_rests_all_over_beside_a_smooth_law_is_known_to_rest():
+    parts = [rd.Dashpot(MIDDLE[1], 5.0, exponent=0.0), rd.Dashpot(LENGTH / 4, 1.0, exponent=1.5)]
+    scene = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION, parts=parts)
+    model = scene.compile(elements=4, element="rigid")
+    nodes = [("z", float(x)) for x in model.x[1:-1]]
+    asked = {"drive": MIDDLE, "force": rd.Sine(4.9, 3 / PERIOD), "response": nodes}
+    history = model.transient(TIME, **asked, quantity="velocity")
+    free = model.scene.replace(parts=()).compile(elements=4, element="rigid")
+    moves = np.abs(free.transient(TIME, **asked, quantity="velocity").value).max()
+    assert (np.abs(history.value) <= history.error).all()
+    assert history.error[[0, 2]].max() <= 1e-9 * moves
+    assert history.error[1].max() <= 1e-3 * moves
+
+
 # --- stops --------------------------------------------------------------------------------------
 
 

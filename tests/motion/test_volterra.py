@@ -120,6 +120,21 @@ def test_friction_holds_for_good():
     assert 0 < abs(last[-1]) < 30.0 / (4 * 2830.0)
 
 
+def test_what_friction_holds_on_a_span_is_at_rest_as_on_a_support():
+    time = np.linspace(0.0, 0.005, 51)
+    pushed = {"drive": ("z", 0.7), "force": rd.Sine(5.0, 60.0), "response": [PUSH, ("z", 0.7)]}
+
+    def moved(part):
+        parts = [part, rd.Dashpot(0.7, 1.0, exponent=2.0)]
+        model = rd.Scene(rd.Rope(1.0, 0.4), tension=2830.0, parts=parts).compile()
+        return model.transient(time, **pushed)
+
+    held, still = moved(rd.Dashpot(PUSH[1], 50.0, exponent=0)), moved(rd.Support(PUSH[1]))
+    assert held.cost.method == "volterra"
+    assert (np.abs(held.value - still.value) <= held.error + still.error).all()
+    assert held.error.max() <= 1e-3 * np.abs(still.value).max()
+
+
 def test_snapshots_are_of_the_motion():
     model = scene(KINDS["stop"]).compile()
     when = [0.02, 0.05, 0.1]

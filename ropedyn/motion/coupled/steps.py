@@ -98,7 +98,7 @@ class CoupledPassage(LawPassage):
                 return Passed(self.looked, self.reached, done, error, settles)
             self.stages = done
             progress(done / (len(known) - 1))
-        return Passed(self.looked, float(system.time[-1]), done)
+        return Passed(self.looked, float(system.time[-1]), done, largest=stepper.size)
 
     def _edges(self) -> Real:
         """Return when steps begin, and the last one ends."""

@@ -78,6 +78,7 @@ class Passed(NamedTuple):
     error: BaseException | None = None  # what ended it early
     settles: bool = True  # whether Newton's method found the forces
     bent: Real = np.zeros(0)  # the highest degree of laws' forces in steps, relative, (laws,)
+    largest: Real = np.zeros(0)  # forces of laws, (laws,)
 
 
 class Runs:

@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from ...base.answer import Cost
-from ...base.array import Real
+from ...base.array import Flags, Real
 from ...base.errors import SceneError, SolveError
 from ...chain.compiled import Compiled
 from ...chain.port import Point, is_force, locate, moving
@@ -131,10 +131,17 @@ class Agreed:
     by_steps: bool = False  # whether forces are constant in steps
 
 
-def scale(value: Real) -> Real:
-    """Return the largest value of each response, of what is rounding the largest of all as well."""
+def allowed(
+    value: Real, tolerance: float, *, beside: float = 0.0, held: Flags | bool = False
+) -> Real:
+    """Return the error of each response that is within a tolerance: of rounding, as much again.
+
+    Of what is held, and so at rest, relative to the largest of all and what moves beside them.
+    """
     most = np.abs(value).max(axis=1, initial=0.0)
-    return np.maximum(np.maximum(most, NOTHING * most.max(initial=0.0)), np.finfo(float).tiny)
+    largest = max(float(most.max(initial=0.0)), beside)
+    noise = max(NOTHING * largest, float(np.finfo(float).tiny))
+    return np.where(held, tolerance * largest, np.where(most > noise, tolerance * most, noise))
 
 
 def rounding(value: Real, time: Real) -> Real:
@@ -149,6 +156,7 @@ def agree(
 ) -> Agreed:
     """Halve the steps until two runs agree within the tolerance, and return the finer."""
     linear, h, time = system.without_laws(), system.first_step, system.looks[0].time
+    driven = np.abs(linear[0]).max(axis=1, initial=0.0)
     span, worst = float(system.time[-1] - system.time[0]), np.inf
     coarse: list[Real] | None = None
     last: Agreed | None = None
@@ -175,14 +183,17 @@ def agree(
             passage is CoupledPassage,
         )
         if passed.error is None and coarse is not None:
-            size = np.maximum(scale(looked[0]), NOTHING * scale(linear[0]))[:, None]
+            held = system.held(len(driven), passed.largest)
+            beside = float(driven.max(initial=0.0)) if system.is_sharp else 0.0
+            most = allowed(looked[0], tolerance, beside=beside, held=held)
+            most = np.maximum(most, tolerance * NOTHING * driven)[:, None]
             bends = (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
             falls = BENT_FALLS if bends else system.falls
             wrong = reach(falls) * runs.apart(looked[0], coarse[0], falls)
             found.step_error = wrong + rounding(looked[0], time)
-            worst = float((found.step_error / size).max(initial=0.0))
+            worst = tolerance * float((found.step_error / most).max(initial=0.0))
             if worst <= tolerance:
-                return _cancelled(found, system, tolerance)
+                return _cancelled(found, system, tolerance, held)
         hard += not passed.settles
         if passed.error is not None and (passed.settles or hard > HARD):
             return found
@@ -197,7 +208,7 @@ def agree(
             return found
 
 
-def _cancelled(found: Agreed, system: LawSystem, tolerance: float) -> Agreed:
+def _cancelled(found: Agreed, system: LawSystem, tolerance: float, held: Flags) -> Agreed:
     """Add what rounding leaves of modes that cancel, as where motion has hardly begun."""
     look, size = system.looks[0], np.zeros(len(found.looked[0]))
     for one, push in zip(system.driven, system.pushes):
@@ -206,7 +217,7 @@ def _cancelled(found: Agreed, system: LawSystem, tolerance: float) -> Agreed:
     found.step_error = found.step_error + ROUNDING * size[:, None]
     # what moves less is held
     most = np.maximum(np.abs(found.looked[0]).max(axis=1, initial=0.0), NOTHING * size)
-    lost = ROUNDING * size > tolerance * most
+    lost = (ROUNDING * size > tolerance * most) & ~held
     if lost.any():
         found.error = SolveError(
             f"of modes that cancel rounding leaves up to "
@@ -239,7 +250,7 @@ def component_motion(
         apart = np.abs(looked - found.looked[0]).max(axis=1, initial=0.0)
         found.truncation = apart if passed.error is None else np.full(len(apart), np.inf)
         wrong = found.truncation + found.step_error.max(axis=1, initial=0.0)
-        worst = float((wrong / scale(found.looked[0])).max(initial=0.0))
+        worst = tolerance * float((wrong / allowed(found.looked[0], tolerance)).max(initial=0.0))
         found.error = passed.error if passed.settles else None
         if found.error is not None or worst <= tolerance:
             return found

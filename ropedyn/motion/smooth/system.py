@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.array import Real
+from ...base.array import Flags, Real
 from ...chain.port import Point, moving
 from ...scene.force import Force
 from ..modal.convolution import motion_under
@@ -73,6 +73,15 @@ class LawSystem:
     def points(self) -> slice:
         """Outputs that are the laws' points."""
         return slice(len(self.laws))
+
+    @property
+    def is_sharp(self) -> bool:
+        """Whether some law jumps or bends where velocities turn or contact begins."""
+        return False
+
+    def held(self, count: int, _largest: Real) -> Flags:
+        """Say which of the first outputs laws hold, whose forces have been so large [N]."""
+        return np.zeros(count, dtype=np.bool_)
 
     @property
     def falls(self) -> float:
