@@ -71,7 +71,7 @@ def within_tolerance(run: Run) -> Moved:
     is_modal = run.modes is None and _methods(run)[0] == "modal"
     moved = _shaped(run, run.coarse) if is_modal else _shaped_by_line(run, run.coarse)
     tolerance = _tolerance(run)
-    share = moved.shares(_kinds(run))
+    share = moved.shares(run)
     if (share > tolerance).any():
         raise SolveError(
             f"start and velocity are known to {share.max():.1e} of the largest value, with "
@@ -84,33 +84,28 @@ def nearest(run: Run, tolerance: float) -> Moved:
     """Return the motion within the tolerance, or the nearest to it that a method finds."""
     methods = ["modal"] if _has_ratios(run) else [*dict.fromkeys(("line", _methods(run)[0]))]
     found: list[Moved] = []
-    for _, moved in _tried(run, methods, tolerance, None):
+    for _, moved in _tried(run, methods, tolerance):
         if isinstance(moved, SolveError):
             refused = moved
-        elif (moved.shares() <= tolerance).all():
+        elif (moved.shares(run) <= tolerance).all():
             return moved
         else:
             found.append(moved)
     if not found:
         raise refused
-    return min(found, key=lambda moved: float(np.nan_to_num(moved.shares(), nan=np.inf).max()))
+    return min(found, key=lambda moved: float(np.nan_to_num(moved.shares(run), nan=np.inf).max()))
 
 
 def _tried(
-    run: Run, methods: list[str], tolerance: float, kinds: list[str] | None
+    run: Run, methods: list[str], tolerance: float
 ) -> Iterator[tuple[str, Moved | SolveError]]:
     """Return what each method finds, or why it refuses."""
     for method in methods:
         try:
-            found: Moved | SolveError = METHOD[method](run, tolerance, kinds)
+            found: Moved | SolveError = METHOD[method](run, tolerance)
         except SolveError as refusal:
             found = refusal
         yield method, found
-
-
-def _kinds(run: Run) -> list[str] | None:
-    """Return of which kind each response is, where errors are shares of the largest of a kind."""
-    return [moving(point) for point in run.responses] if run.together else None
 
 
 def _shaped(run: Run, coarse: Run) -> Moved:
@@ -142,14 +137,14 @@ def _shaped_by_line(run: Run, coarse: Run) -> Moved:
 
 def _by_methods(run: Run) -> Moved:
     """Return the motion by the first method whose error is within the tolerance, or raise."""
-    tolerance, kinds = _tolerance(run), _kinds(run)
+    tolerance = _tolerance(run)
     refused, advice = list[str](), ""
-    for method, moved in _tried(run, _methods(run), tolerance, kinds):
+    for method, moved in _tried(run, _methods(run), tolerance):
         if isinstance(moved, SolveError):
             refused.append(f"{method}: {moved}")
             continue
         advice = ". A larger tolerance, more times or a smoother force help"
-        share = moved.shares(kinds)
+        share = moved.shares(run)
         late = np.flatnonzero(~(share <= tolerance))
         if all(is_still(run, int(r)) for r in late):
             return moved
@@ -162,16 +157,16 @@ def _by_methods(run: Run) -> Moved:
     )
 
 
-def _summed(run: Run, tolerance: float, kinds: list[str] | None) -> Moved:
+def _summed(run: Run, tolerance: float) -> Moved:
     """Return the sum over modes, over more of them while its error exceeds the tolerance."""
     moved, count = superpose(run), run.modes
     is_modal = _has_ratios(run)
-    while run.modes is None and not (moved.shares(kinds) <= tolerance).all():
+    while run.modes is None and not (moved.shares(run) <= tolerance).all():
         if is_modal:
             # modes with ratios of their own have no transfer function that the line could take
             moved = estimated(run, moved)
         count = MORE * (moved.modes if count is None else count)
-        if count > MOST or (moved.shares(kinds) <= tolerance).all():
+        if count > MOST or (moved.shares(run) <= tolerance).all():
             break
         more = superpose(replace(run, modes=count))
         if more.modes <= moved.modes:
@@ -180,7 +175,7 @@ def _summed(run: Run, tolerance: float, kinds: list[str] | None) -> Moved:
     return moved
 
 
-METHOD: dict[str, Callable[[Run, float, list[str] | None], Moved]]
+METHOD: dict[str, Callable[[Run, float], Moved]]
 METHOD = {"modal": _summed, "line": invert}
 
 

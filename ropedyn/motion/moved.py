@@ -11,6 +11,7 @@ import numpy as np
 from ..base.array import Real
 from ..base.errors import SceneError, SolveError
 from ..chain.compile import compile_scene
+from ..chain.port import moving
 from .history import History
 from .request import Run
 
@@ -24,15 +25,13 @@ class Moved(NamedTuple):
     modes: int = 0  # that were summed
     lines: int = 0  # rates that were looked at
 
-    def shares(self, kinds: list[str] | None = None) -> Real:
-        """Return the largest error of each response over its largest value, (responses,).
-
-        With `kinds`, over that of all responses of its kind.
-        """
+    def shares(self, run: Run) -> Real:
+        """Return the largest error of each response over what it is a share of, (responses,)."""
         size = np.abs(self.value).max(axis=1)
-        if kinds is not None:
-            same = np.array(kinds)[:, None] == np.array(kinds)
-            size = np.where(same, size, 0.0).max(axis=1)
+        if run.together:
+            kinds = np.array([moving(point) for point in run.responses])
+            size = np.where(kinds[:, None] == kinds, size, 0.0).max(axis=1)
+        size = np.maximum(size, run.least)
         error = self.error.max(axis=1)
         none = np.where(error > 0, np.inf, 0.0)
         return np.divide(error, size, out=none, where=size > 0)

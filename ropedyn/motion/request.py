@@ -49,7 +49,8 @@ class Run:
     snapshots: Real = field(default_factory=lambda: np.zeros(0))  # (s,) looks at all of it [s]
     modes: int | None = None  # of each component, that the modal method sums
     tolerance: float | None = None  # of the largest value of each response
-    together: bool = False  # of all responses of one coordinate instead
+    together: bool = False  # of all responses of one coordinate instead,
+    least: Real | float = 0.0  # or of this (responses,) where it is more
     progress: Callable[[float], Any] = silent  # takes the fraction that is done
     partial: bool = False  # whether what was computed until the numbers fail is an answer
     # of the model, drives and responses; other kinds of ropes have their own

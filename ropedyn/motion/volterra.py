@@ -110,7 +110,7 @@ class Stepped:
 
     def moved(self) -> Moved:
         """Return the motion of the responses."""
-        return self._nearest(self.pushed())
+        return self._nearest(self.pushed().but(least=np.where(self.held, self.free, 0.0)))
 
     def pushed(self) -> Run:
         """Return the linear run that the laws' forces drive too."""
@@ -158,11 +158,19 @@ class Stepped:
             raise Ended(error, float(self.time[made])) from error
         return force
 
-    @property
+    @computed
     def held(self) -> Flags:
         """Which responses friction holds all the time."""
         points = held_points(self.laws.acting, np.abs(self.force).max(axis=1))
         return np.array([point in points for point in self.run.responses], dtype=np.bool_)
+
+    @computed
+    def free(self) -> float:
+        """What responses move at most without the laws, where friction holds some."""
+        if not self.held.any():
+            return 0.0
+        run = self.run
+        return float(np.abs(self._linear(responses=run.responses, order=run.order)).max())
 
     def _error(self, failure: Any, when: float, residual: float) -> BaseException:
         if failure is not None:
@@ -252,7 +260,7 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
             before = coarse[1]
             both = runs.apart(found.value, before.value, FALLS)
             known = found._replace(error=found.error + TIMES * both)
-            most = allowed(found.value, tolerance, held=stepped.held)[:, None]
+            most = allowed(found.value, tolerance, beside=stepped.free, held=stepped.held)[:, None]
             if (known.error <= most).all():
                 return stepped, known, None
             # shorter steps do not help where linear motion is not known
@@ -285,6 +293,6 @@ def _unknown(run: Run, tolerance: float, count: int, known: Moved, most: Real) -
     until = float(run.time[max(int(late.argmax()) - 1, 0)])
     return SolveError(
         f"the motion is known to {tolerance:g} of its largest value until t = {until:.4g} s only: "
-        f"with {count} steps the error grows to {known.shares().max():.1e}. A larger tolerance or "
-        "an earlier end help"
+        f"with {count} steps the error grows to {tolerance * (known.error / most).max():.1e}. "
+        "A larger tolerance or an earlier end help"
     )

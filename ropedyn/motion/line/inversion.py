@@ -59,7 +59,7 @@ FINE, FIRST = 1e-5, 4  # So fine a tolerance is rarely reached by fewer times th
 REACH = 4.0  # They reach so many times as far as the forces do, at first.
 
 
-def invert(run: Run, tolerance: float, kinds: list[str] | None = None) -> Moved:
+def invert(run: Run, tolerance: float) -> Moved:
     """Return the motion, of as many rates as it takes to be within the tolerance."""
     line = Line.of(run, tolerance)
     still = np.zeros(len(run.responses), dtype=np.bool_)
@@ -67,7 +67,7 @@ def invert(run: Run, tolerance: float, kinds: list[str] | None = None) -> Moved:
 
     def late(moved: Moved) -> Real:
         """Return what errors are of responses that move."""
-        share = moved.shares(kinds)
+        share = moved.shares(run)
         lost = np.flatnonzero(~(share <= 1) & ~asked)
         still[lost], asked[lost] = [is_still(run, int(r)) for r in lost], True
         return np.asarray(np.where(still, 0.0, share))
