@@ -152,8 +152,7 @@ class Line:
     def rounded(self, moved: Moved) -> Moved:
         """Return the motion with what rounding adds to its error."""
         grid, (_, held, force, _) = self.grid, self._smooth
-        parts = [_rounding(self.transfer, grid.s[k], self.value[..., k]) for k in self.parts]
-        wrong = np.concatenate(parts, axis=2) + EPS * np.abs(held)
+        wrong = _rounding(self.transfer, grid.s, self.value, self.parts) + EPS * np.abs(held)
         wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
         # transforms are rounded as those of forces that do not alternate
         most = np.array([np.abs(one.value(self.run.time)).max() for one in self.forces])
@@ -339,9 +338,12 @@ class Line:
         return np.abs(np.einsum("drk,dk->rk", self.slow, force)).max(axis=1)
 
 
-def _rounding(transfer: TransferFunctions, s: Complex, value: Complex) -> Real:
-    """Bound what rounding does to values at many rates by what it does at some of them."""
-    at = np.unique(np.linspace(0, len(s) - 1, ROUNDED).astype(np.intp))
+def _rounding(
+    transfer: TransferFunctions, s: Complex, value: Complex, parts: tuple[slice, ...]
+) -> Real:
+    """Bound what rounding does to values at many rates by what it does at some of each part."""
+    some = [np.linspace(k.start, k.stop - 1, ROUNDED).astype(np.intp) for k in parts]
+    at = np.unique(np.concatenate(some))
     size = np.abs(value)
     bound = transfer.rounding(s[at])
     share = np.divide(bound, size[..., at], out=np.zeros_like(bound), where=size[..., at] > 0)
