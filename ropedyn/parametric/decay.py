@@ -131,8 +131,9 @@ def _order(system: ModalSystem, amplitude: float, motion: Propagator, period: fl
     value = np.linalg.eigvals(motion(np.array([period]))[0])
     phase = float(np.angle(value[np.abs(value).argmax()]))
     hill = Hill.of(system, amplitude, period)
-    rate = 2j * math.pi / period * (hill.harmonic + phase / (2 * math.pi))
+    nu = phase / (2 * math.pi)
+    rate = 2j * math.pi / period * (hill.harmonic + nu)
     column: Numbers = np.random.default_rng(0).normal(size=(len(rate) * len(system.eigenvalue), 1))
     for _ in range(4):
         column = np.linalg.qr(hill.solve(rate, column))[0]
-    return order_of(rate, column)
+    return order_of(rate, column, nu)

@@ -37,6 +37,8 @@ PAIRS = 2  # Two that meet are among so many to either side of the nearest.
 BENT = 30  # each of so many among the bands that lie together.
 SYMMETRIC = 1e-9  # Bands are flat at phases 0 and pi.
 MOVES = 1e-8  # Where a band is flat it lies so close to where it was looked for, in parts of it.
+SAMPLES = 8  # The highest harmonic is looked at so many times a turn, the first time after
+BETWEEN = 0.3  # this part of the time between two looks.
 SETTLED = 1e-14  # Phases are known so well, in turns.
 
 
@@ -166,16 +168,30 @@ def turns(system: ModalSystem, amplitude: float, period: float) -> int:
     return int((eigvals_banded(lower, lower=True, check_finite=False) > 0).sum())
 
 
-def order_of(rate: Numbers, motion: Numbers) -> int:
+def order_of(rate: Numbers, motion: Numbers, nu: float) -> int:
     """Return n of the resonance n Omega = omega_i + omega_j of two that meet, columns of motions.
 
-    The mean rate of the one that turns forward and of the other, by the action they carry.
+    The mean rate of the one that turns forward and of the other, by the action they carry; even
+    where they meet at phase 0 and odd at pi, where one mode passes its rest n times in a period.
     """
+    turning = rate.imag * (len(rate) - 1) / (rate.imag[-1] - rate.imag[0])
+    is_real = abs(math.remainder(nu, 0.5)) <= SYMMETRIC
+    if is_real and len(motion) == len(rate):
+        return _passages(turning, motion[:, 0])
     size = (np.abs(motion.reshape(len(rate), -1)) ** 2).sum(axis=1)
-    turning = rate.imag
     forward, backward = size * (turning > 0), size * (turning < 0)
     means = [(turning**2 @ part) / (np.abs(turning) @ part) for part in (forward, backward)]
-    return round(float(sum(means) * (len(rate) - 1) / (turning[-1] - turning[0])))
+    mean, odd = float(sum(means)), round(2 * nu) % 2
+    return odd + 2 * round((mean - odd) / 2) if is_real else round(mean)
+
+
+def _passages(turning: Real, motion: Numbers) -> int:
+    """Return how often a motion, but for a factor real, changes its sign in a period."""
+    count = SAMPLES * len(motion)
+    # by symmetry it is at rest when the tension is largest or least: beside that
+    turn = np.exp(2j * np.pi / count * np.multiply.outer(np.arange(count + 1) + BETWEEN, turning))
+    value = turn @ motion
+    return int((np.diff(np.sign((value * value[np.abs(value).argmax()].conj()).real)) != 0).sum())
 
 
 class Flat(NamedTuple):
@@ -290,7 +306,7 @@ def flat_band(system: ModalSystem, amplitude: float, period: float, phase: float
     if abs(math.remainder(nu, 0.5)) > SYMMETRIC and (flat := bands.flat(which)) is not None:
         level = flat[0] if abs(flat[0] - level) < MOVES * square else level
     found = np.array([2 * np.pi / math.sqrt(square + level)])
-    return Flat(found, order_of(bands.rate, bands.motion[:, which]))
+    return Flat(found, order_of(bands.rate, bands.motion[:, [which]], nu))
 
 
 def flat_pair(system: ModalSystem, amplitude: float, period: float, phase: float) -> Flat | None:
@@ -312,5 +328,5 @@ def flat_pair(system: ModalSystem, amplitude: float, period: float, phase: float
             break
         nu += step
         bands = _bands(hill, square, nu)
-    order = order_of(bands.rate, bands.motion[:, upper : upper + 2])
+    order = order_of(bands.rate, bands.motion[:, upper : upper + 2], nu)
     return Flat(2 * np.pi / np.sqrt(square + level), order)

@@ -90,7 +90,10 @@ class Boundary(Answer):
         Increasing [Hz]. Their relative error is some 1e-15, with damping too but near the tip of a
         tongue, where its two edges meet as the root of rounding.
     order : ndarray of int, shape (b,)
-        n of the resonance n f = f_i + f_j whose tongue begins or ends there.
+        n of the resonance n f = f_i + f_j whose tongue begins or ends there: of one mode how often
+        it passes its rest in a period, of several what the mean rates of the two motions that meet
+        there add up to, even where these return after a period and odd after two. Modes that the
+        tension mixes strongly may have turned, since they left no amplitude, to the next such n.
     resonances : int
         How many of them were counted between the frequencies of the map: tongues without width
         too, and those that damping closes.

@@ -366,6 +366,26 @@ def test_a_point_that_is_held_for_ever_is_known_to_rounding():
     assert history.error[0].max() <= 1e-13 * np.abs(history.value[1]).max()
 
 
+def test_a_point_that_friction_holds_is_as_on_a_support_to_any_tolerance():
+    def moved(part):
+        parts = [rd.PointMass(0.25, 0.36), part, rd.Stop(0.75, 1.2e4, side=-1)]
+        scene = rd.Scene(rd.Rope(1.0, 0.2), tension=1000.0, parts=parts)
+        model, blow = scene.compile(elements=4, element="rigid"), rd.Impulse(0.06, duration=0.005)
+        return model.transient(
+            np.linspace(0.0, 0.027, 26),
+            drive=("z", 0.75),
+            force=blow,
+            response=[("z", 0.25), ("z", 0.5)],
+            tolerance=1e-8,
+        )
+
+    held, still = moved(rd.Dashpot(0.25, 50.0, exponent=0.0)), moved(rd.Support(0.25))
+    assert held.cost.method == "events"
+    assert not still.value[0].any()
+    assert (np.abs(held.value - still.value) <= held.error + still.error).all()
+    assert held.error[0].max() <= 1e-12 * np.abs(still.value[1]).max()
+
+
 @pytest.mark.parametrize("last", np.linspace(0.4, 0.44, 25))
 def test_the_last_time_is_answered_wherever_the_last_event_is(last):
     string = rd.Scene(rd.Rope(2.6, 0.41), tension=3700.0, parts=[rd.Dashpot(1.3, 20.0, exponent=0)])

@@ -97,6 +97,49 @@ def test_tongues_of_one_mode_are_those_of_mathieu(amplitude, claim):
         assert sorted(off.argmin(axis=1)) == [0, 1]
 
 
+@pytest.mark.parametrize("amplitude", [1.0, 1.2, 2.0])
+def test_orders_where_the_tension_changes_sign_are_those_of_mathieu(amplitude):
+    found = boundary(ONE, 0.2 / (2 * np.pi), 2.6 / (2 * np.pi), amplitude)
+    assert found.proved
+    alpha = 4 / (2 * np.pi * found.frequency) ** 2
+    numbers = range(1, 12)
+    known = [
+        [one(n, amplitude * x / 2) for n in numbers for one in (mathieu_a, mathieu_b)]
+        for x in alpha
+    ]
+    nearest = np.abs(np.array(known) / alpha[:, None] - 1).argmin(axis=1)
+    assert found.order.tolist() == (nearest // 2 + 1).tolist()
+    assert found.highest_order >= max(found.order)
+
+
+def test_orders_are_even_where_motion_returns_after_a_period_and_odd_after_two():
+    seen = []
+    for number in range(12):
+        system = random_system(np.random.default_rng([31, number]))
+        top = 2 * system.omega.max() / (2 * np.pi)
+        low, high, amplitude = top / 6, 1.15 * top, 0.9
+        found = boundary(system, low, high, amplitude)
+        motion = Propagator.of(system, 1 / high, 1 / low, amplitude)
+        for value, order in zip(np.linalg.eigvals(motion(1 / found.frequency)), found.order):
+            # the two that meet are the root of rounding off each other, what damping leaves is real
+            count = 1 if system.damping.any() else 2
+            after = [np.sort(np.abs(value - one))[count - 1] < 1e-5 for one in (1.0, -1.0)]
+            if after[0] != after[1]:
+                seen.append(order)
+                assert order % 2 == int(after[1])
+    assert len(seen) >= 40
+
+
+def test_the_order_of_modes_that_mix_is_that_of_the_tongue_it_began_as():
+    """Followed to a tenth of the amplitude 2 f3/f is 4.00002."""
+    rope, part = rd.Rope(1.0, 0.1, bending_stiffness=10.4677), rd.PointMass(0.32864, 0.028736)
+    scene = rd.Scene(rope, tension=1000.0, parts=[part], ends=("clamped", "pinned"))
+    found = scene.compile().stability_map([110.0, 112.0], [0.0], modes=3).boundary(354.0)
+    nearest = np.abs(found.frequency - 111.3353).argmin()
+    assert found.frequency[nearest] == pytest.approx(111.3353, abs=2e-4)
+    assert found.order[nearest] == 4
+
+
 def test_a_tongue_as_narrow_as_rounding_has_its_edges():
     """Of order 9 at a tenth of the mean tension: 3e-11 of its frequency wide."""
     found = boundary(ONE, 0.2220 / (2 * np.pi), 0.2222 / (2 * np.pi), 0.1)

@@ -26,6 +26,7 @@ MODES, MOST = 64, 128  # Of continuous spans and long chains, at first and at mo
 NUDGE = 1e-11  # Rounding is at most this part of what drives.
 MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.
 ROUNDED = 256 * np.finfo(float).eps  # Of the modes that move a point, what rounding moves it.
+LEFT = 4 * ROUNDED
 HELD = 1e-9  # Of the modes that move a point: where it moves less, it is held.
 
 
@@ -152,7 +153,7 @@ def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
         found = follow(run, looks, modes)
         error = _running(MARGIN * (found.seen[0] - coarse.seen[0])) + _rounding(found)
         ends = bool(run.modes) or 2 * modes > MOST or math.isfinite(found.until)
-        if ends or (error <= least * _largest(found)).all():
+        if ends or (error <= _allowed(found, least)).all():
             return found, error
         coarse, modes = found, 2 * modes
 
@@ -167,15 +168,19 @@ def _rounding(found: Followed) -> Real:
     return ROUNDED * found.size[0][:, None]
 
 
-def _largest(found: Followed) -> Real:
-    """Return the largest value of each response, (responses, 1), or what rounding leaves of 0."""
-    value = np.abs(found.seen[0]).max(axis=1, initial=0.0)
-    return np.maximum(value, HELD * found.size[0])[:, None]
+def _allowed(found: Followed, tolerance: float) -> Real:
+    """Return the error of each response that is within a tolerance, (responses, 1).
+
+    What is held is known to what rounding leaves, a few times its estimate.
+    """
+    value, size = np.abs(found.seen[0]).max(axis=1, initial=0.0), found.size[0]
+    most = tolerance * np.maximum(value, HELD * size)
+    return np.where(value > HELD * size, most, np.maximum(most, LEFT * size))[:, None]
 
 
 def _sure_until(run: Run, found: Followed, error: Real) -> float:
     """Return the last time at which the error of every response is within the tolerance."""
-    wrong = (error > (run.tolerance or TOLERANCE) * _largest(found)).any(axis=0)
+    wrong = (error > _allowed(found, run.tolerance or TOLERANCE)).any(axis=0)
     if not wrong.any():
         return math.inf
     return float(run.time[max(int(wrong.argmax()) - 1, 0)])
