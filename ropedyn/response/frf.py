@@ -108,7 +108,8 @@ class FRF(Curves):
         What it cost.
     stable : ndarray of bool, shape (f,), or None
         Of steady motion under a stepped sine: whether it comes back to itself when it is disturbed,
-        computed when it is first asked for; False too where that cannot be told, as on a fold.
+        computed when it is first asked for; False too where that cannot be told, as on a fold, and
+        where friction slips and periods stay unlike, whose mean is the value.
     decay : float
         The value is the response at s = i omega + decay [1/s], 0 unless it was asked for: that of
         K + s C + s^2 M, with s and s^2 times the displacement as velocity and acceleration. A loss

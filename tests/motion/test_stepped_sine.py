@@ -235,6 +235,29 @@ def test_motion_that_never_repeats_with_the_drive_is_refused(friction, stiffness
         model.stepped_sine([f], drive=("z", 0.5), amplitude=1.0)
 
 
+def test_periods_that_are_slow_to_become_unlike_are_waited_for():
+    """Of one period the motion grows by 1.06 each, until every second one is another."""
+    f = 21.31475843509003
+    parts = [rd.Dashpot(0.5, 0.65818, exponent=0.0), rd.Stop(0.75, 1253.234)]
+    damping = rd.ViscousDamping(0.28284486)
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping, parts=parts)
+    model = scene.compile(elements=4, element="rigid")
+    seen = [("z", 0.25), ("z", 0.5), ("z", 0.75)]
+    stepped = model.stepped_sine([f], drive=("z", 0.5), amplitude=1.0, response=seen)
+    time = np.arange(300 * 64 + 1) / (64 * f)
+    force = rd.Sine(1.0, f, phase=np.pi / 2)
+    history = model.transient(time, drive=("z", 0.5), force=force, response=seen)
+    turn = np.exp(-2j * np.pi * f * time[-257:-1])
+    each = (2 * history.value[:, -257:-1] * turn).reshape(3, 4, 64).mean(axis=2)
+    assert np.abs(each[:, 0] - each[:, 2]).max() < 1e-6 * np.abs(each).max()
+    assert np.abs(each[:, 0] - each[:, 1]).max() > 0.1 * np.abs(each).max()
+    off = np.abs(stepped.value[:, 0] / each.mean(axis=1) - 1)
+    # the 63rd harmonic is seen as the first in 64 samples, and falls as 1/k^3
+    assert (off <= stepped.rounding_error[:, 0] + 1e-5).all()
+    assert stepped.rounding_error.max() <= 1e-3
+    assert not stepped.stable.any()
+
+
 @pytest.mark.parametrize(("decay", "ends"), [(0.0, 64), (1e-4, 64), (0.01, None)])
 def test_changes_that_stay_as_they_are_end_what_is_followed(decay, ends):
     """From half of the looks to all of them they must fall below 0.9."""

@@ -30,6 +30,7 @@ LONGEST = 100_000  # A motion that changes after so many periods is said not to 
 DECAY = 4.0  # After so many time constants the changes are compared with those before,
 LEAST = 256  # and not before so many periods;
 UNDAMPED = 4096  # after so many where nothing but friction damps.
+ALIKE = 1e-4  # Periods that differ by less than this part of what is asked differ by rounding.
 AS_BEFORE = 0.9  # Changes that are not below so much of those before do not decay.
 TOLERANCE = 1e-3  # Of the steady state where none is given.
 SAMPLES = 1024  # Of a period, in exact phases: what slips has harmonics that fall as 1/k^3.
@@ -42,9 +43,17 @@ class MeanAmplitudes(NamedTuple):
     """Mean amplitudes over some periods."""
 
     watched: Complex  # (mine,)
-    modes: Complex  # (k,) all of the motion
+    modes: Complex  # (k, periods) all of the motion in each of them
     parts: Real  # (mine,) magnitudes that are added up to what is watched
     folded: Real | float = 0.0  # (mine,) what harmonics beyond the samples may be in it
+
+
+class Settled(NamedTuple):
+    """Where a motion stays."""
+
+    value: Complex  # (responses,)
+    error: Real  # (responses,)
+    repeats: bool  # whether after one period, or turn
 
 
 class Goes(Protocol):
@@ -65,17 +74,17 @@ def slipping(asked: SteppedSine, turn: Callable[[float], int]) -> FRF:
     run = Run(asked.model, np.array([0.0, 1.0]), (asked.drive,), (), asked.responses)
     push = Sine(asked.amplitude, float(asked.frequency[0]), phase=math.pi / 2)
     exact = not why_not_events(run)
-    found: Iterator[tuple[Complex, Real]]
+    found: Iterator[Settled]
     found = _by_phases(asked, run, push) if exact else _by_steps(asked, run, push, turn)
     value = np.zeros((len(asked.responses), len(asked.frequency)), dtype=np.complex128)
     error = np.zeros(value.shape)
-    for k, (one, wrong) in enumerate(found):
-        size = np.abs(one)
-        value[:, k] = one / asked.amplitude
-        error[:, k] = np.divide(wrong, size, out=np.zeros_like(size), where=size > 0)
+    stable = np.zeros(len(asked.frequency), dtype=np.bool_)
+    for k, one in enumerate(found):
+        size = np.abs(one.value)
+        value[:, k], stable[k] = one.value / asked.amplitude, one.repeats
+        error[:, k] = np.divide(one.error, size, out=np.zeros_like(size), where=size > 0)
         asked.progress((k + 1) / len(asked.frequency))
     cost = Cost("events" if exact else "steps", len(asked.model.x) - 1, asked.model.size)
-    stable = np.ones(len(asked.frequency), dtype=np.bool_)  # or it would not have settled
     return asked.answer(asked.frequency, value, error, cost, stable)
 
 
@@ -101,6 +110,11 @@ class PhasesGoOn:
         self.now = rest(one, 0.0)
         self.mode: tuple[int, ...] | None = None
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether no mode is left out."""
+        return not math.isfinite(self.one.system.states.beyond)
+
     def window(self, frequency: float, periods: range) -> MeanAmplitudes:
         """Follow some periods."""
         number, own = SAMPLES * len(periods), len(self.mine)
@@ -120,7 +134,8 @@ class PhasesGoOn:
             last = visit
         assert last is not None
         self.now, self.mode = last.end(), last.phase.mode
-        found = amplitudes(value, SAMPLES).mean(axis=1)
+        each = amplitudes(value, SAMPLES)
+        found = each.mean(axis=1)
         parts = np.abs(states.seen) @ np.abs(found[own:])
         parts += np.abs(states.now + states.late)[:, 0] * self.push.amplitude
         # what symmetry leaves still is rounded beside what moves
@@ -131,24 +146,26 @@ class PhasesGoOn:
         found[list(self.grip.keys() - slips)] = 0.0
         # where forces jump harmonics fall as 1/k
         folded = np.abs(found - amplitudes(value[:, ::2], SAMPLES // 2).mean(axis=1))[:own]
-        return MeanAmplitudes(found[:own], found[own:], parts, folded)
+        return MeanAmplitudes(found[:own], each[own:], parts, folded)
 
 
-def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[tuple[Complex, Real]]:
-    """Yield the amplitudes and how far they are off, of one frequency after another."""
+def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[Settled]:
+    """Yield where the motion of one frequency after another stays."""
 
-    def of(modes: int) -> list[Goes]:
+    def of(modes: int) -> list[PhasesGoOn]:
         given = Run(run.model, run.time, run.drives, (push,), run.responses)
         look = Look(run.responses, run.time, 0)
         found = moving_components(given, [look], modes)
         return [PhasesGoOn(one, push, run.responses) for one in found]
 
-    rows, fewer = of(MODES), of(MODES // 2) if asked.model.element == "continuous" else None
+    rows = of(MODES)
+    fewer = None if all(one.is_whole for one in rows) else of(MODES // 2)
     for f in asked.frequency.tolist():
-        after, off = _settled(asked, rows, f, 1)
+        found = _settled(asked, rows, f, 1)
         if fewer is not None:
-            off = off + 2 * np.abs(_settled(asked, fewer, f, 1)[0] - after)
-        yield after, off
+            apart = np.abs(_settled(asked, fewer, f, 1).value - found.value)
+            found = found._replace(error=found.error + 2 * apart)
+        yield found
 
 
 # --- steps ----------------------------------------------------------------------------------------
@@ -184,16 +201,16 @@ class StepsGoOn:
         seen = modes.seen[of] @ Q + modes.swept[of] @ V
         time = np.asarray(begin + h * np.arange(len(turn) - 1.0))
         seen += self.system.pull(time, Q)
-        found = amplitudes(np.concatenate([seen, Q]), count).mean(axis=1)
-        own = len(self.mine)
+        each = amplitudes(np.concatenate([seen, Q]), count)
+        found, own = each.mean(axis=1), len(self.mine)
         parts = np.abs(modes.seen[of]) @ np.abs(found[own:])
-        return MeanAmplitudes(found[:own], found[own:], parts)
+        return MeanAmplitudes(found[:own], each[own:], parts)
 
 
 def _by_steps(
     asked: SteppedSine, run: Run, push: Sine, turn: Callable[[float], int]
-) -> Iterator[tuple[Complex, Real]]:
-    """Yield the amplitudes and how far they are off, of one frequency after another."""
+) -> Iterator[Settled]:
+    """Yield where the motion of one frequency after another stays."""
     given = Run(run.model, run.time, run.drives, (push,), run.responses)
     rows = []
     for component in moving_together(asked.model):
@@ -210,34 +227,34 @@ def _by_steps(
         for count in 2 ** np.arange(FEWEST.bit_length() - 1, MOST.bit_length()):
             for one in rows:
                 one.count = int(count)
-            after, left = _settled(asked, rows, f, turn(f))
+            found = _settled(asked, rows, f, turn(f))
+            most = np.abs(found.value).max()
             if before is not None:
                 # where velocities turn, errors fall with the step and two runs may agree by chance
-                now = np.abs(after - before)
+                now = np.abs(found.value - before)
                 apart = np.where(np.isinf(apart), now * 2, np.maximum(now, apart / 2))
-                if (2 * apart + left <= tolerance * np.abs(after).max()).all():
+                if (2 * apart + found.error <= tolerance * most).all():
                     break
-            before = after
+            before = found.value
         else:
-            share = float((apart / np.abs(after).max()).max())
+            share = float((apart / most).max())
             raise SolveError(
                 f"frequency {f!r} Hz: with {MOST} steps a period the amplitude is still known to "
                 f"{share:.1e} only: ask for a larger tolerance"
             )
-        yield after, 2 * apart + left
+        yield found._replace(error=2 * apart + found.error)
 
 
 # --- until nothing changes ------------------------------------------------------------------------
 
 
-def _settled(
-    asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: int
-) -> tuple[Complex, Real]:
-    """Return the amplitudes when the motion stays, and how far they are off, (responses,)."""
+def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: int) -> Settled:
+    """Follow the motion until it stays."""
     periods, share = math.ceil(WINDOW / turn) * turn, (asked.tolerance or TOLERANCE) / 2
     decays = Decays(max(_longest(rows, frequency) // periods, 4))
     seen: list[Complex] = []
     motion: list[Complex] = []
+    unlike: list[Complex] = []  # by how much periods differ from their mean
     for k in range(max(LONGEST // periods, LOOKS + 1)):
         found = np.zeros(len(asked.responses), dtype=np.complex128)
         rounded, folded = np.zeros((2, len(found)))
@@ -246,20 +263,26 @@ def _settled(
             found[one.mine], rounded[one.mine] = now.watched, ROUNDING * now.parts
             folded[one.mine] = now.folded
         seen.append(found)
-        motion.append(np.concatenate([now.modes for now in each]))
+        modes = np.concatenate([now.modes for now in each])
+        turns = modes.reshape(len(modes), -1, turn).mean(axis=2)
+        motion.append(modes.mean(axis=1))
+        unlike.append((turns - motion[-1][:, None]).ravel())
         if not decays.go_on(motion):
             break
         if len(seen) <= LOOKS:
             continue
         changes, moves = _changes(seen), _changes(motion)
-        ahead = _left(moves)
-        if ahead > share * np.abs(motion[-1]).max():
+        ahead, most = _left(moves), share * np.abs(motion[-1]).max()
+        # a mean may stay while every second period departs from the others
+        apart = np.abs(unlike[-1]).max(initial=0.0)
+        if ahead > most or (apart > ALIKE * most and _left(_changes(unlike)) > most):
             continue
         # amplitudes may hang back for a while, as where friction just begins to slip
         goes = ahead / moves.max() if ahead > 0 else 0.0
         left = max(_left(changes), goes * float(changes.max()))
         if left <= max(share * np.abs(found).max(), rounded.max()):
-            return found, np.where(found == 0, 0.0, np.maximum(left, rounded) + folded)
+            error = np.where(found == 0, 0.0, np.maximum(left, rounded) + folded)
+            return Settled(found, error, bool(apart <= most))
     change = np.abs(motion[-1] - motion[-2]).max() / np.abs(motion[-1]).max()
     raise SolveError(
         f"frequency {frequency!r} Hz has no steady state of its period: after "
@@ -295,7 +318,7 @@ class Decays:
 
 def _changes(seen: list[Complex]) -> Real:
     """Return the last changes from look to look, of what changes most."""
-    return np.asarray(np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1))
+    return np.asarray(np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1, initial=0.0))
 
 
 def _left(changes: Real) -> float:
