@@ -27,6 +27,7 @@ RESOLVED = 1e-8  # The last terms of a polynomial are smaller than this part of 
 NOISE = 1e-2  # Where the last terms are this small they are either smooth or rounding.
 APART = 4.0  # Roots are told apart that are as many times further from each other than off.
 LEAST = 1e-7  # A polynomial is asked for in no smaller part of the period.
+MOST, MORE = 512, 4  # So many pieces are open at most, or so many times as many as there were.
 ROUNDING = 1e-14  # So is what rounding leaves of it.
 BESIDE = 0.1  # A root so far beside the real axis, in parts of half a piece, is looked at too.
 
@@ -68,6 +69,8 @@ def _places(motion: Propagator) -> tuple[Real, bool]:
         smooth = tail < RESOLVED
         # where halving a piece gains nothing rounding is what is left
         rough = ~smooth & ((half < LEAST * middle) | (tail < NOISE) & (tail > before / 4))
+        # all of it may be, as where motion that nothing damps goes beside what is damped
+        rough |= ~smooth & (2 * np.count_nonzero(~smooth) > max(MOST, MORE * len(motion.edge)))
         resolved &= not rough.any()
         rest = ~smooth & ~rough
         for piece in np.flatnonzero(~rest):

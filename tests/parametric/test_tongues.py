@@ -283,6 +283,24 @@ def test_what_polynomials_cannot_resolve_is_not_proved(monkeypatch):
     assert not boundary(system, 0.2, 0.5, 0.1).proved
 
 
+def test_what_nothing_damps_beside_what_is_damped_is_not_proved_in_few_pieces(monkeypatch):
+    pieces, product = [], decay._product
+    monkeypatch.setattr(decay, "_product", lambda *of: pieces.append(len(of[1])) or product(*of))
+    scene = rd.Scene(
+        rd.Rope(1.0, 0.1, bending_stiffness=1.0),
+        tension=1000.0,
+        ends=("pinned", "clamped"),
+        damping=rd.ModalDamping((0.0, 0.01, 0.0)),
+    )
+    stability = scene.compile().stability_map([30.0, 220.0], [0.0], modes=3)
+    edges = [stability.boundary(amplitude) for amplitude in (0.1, 0.01)]
+    assert not any(one.proved for one in edges)
+    assert max(pieces) <= decay.MOST
+    # the first tongue is as wide as the amplitude is large
+    wide, narrow = (np.ptp(one.frequency[:2]) for one in edges)
+    assert narrow == pytest.approx(wide / 10, rel=0.02)
+
+
 def test_a_turn_too_many_is_not_proved(monkeypatch):
     """The count of Hill's matrix holds the phases to account."""
     monkeypatch.setattr(krein, "turns", lambda *given: 2 * hill.turns(*given) + 1)
