@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -40,6 +41,9 @@ class StabilityMap(Answer):
         Of the modes that are summed, at the mean tension [Hz].
     eigenvalue, geometric, damping : ndarray, shape (k,), (k, k) and (k, k)
         Lambda, Gamma and C of their amplitudes, q'' + C q' + (Lambda + a(t) Gamma) q = 0.
+    highest_amplitude : float
+        The mean tension [N] of a rope without bending stiffness, which must not push; else
+        infinite.
     tongues : tuple of Tongue
         Where regions of instability begin at no amplitude: `modes`, `order`, `frequency` [Hz],
         `spread` to either side [Hz/N], `kind` ("principal", "sum", "secondary") and `label`, such
@@ -65,6 +69,7 @@ class StabilityMap(Answer):
     eigenvalue: Real = field(metadata=axes("mode", unit="rad^2/s^2"))
     geometric: Real = field(metadata=axes("mode", "other_mode", unit="rad^2/(N s^2)"))
     damping: Real = field(metadata=axes("mode", "other_mode", unit="1/s"))
+    highest_amplitude: float
     cost: Cost
 
     @computed
@@ -131,6 +136,7 @@ class StabilityMap(Answer):
         array([ 97.485, 102.484])
         """
         value = check.number(amplitude, "amplitude", "N", sign="nonnegative")
+        _refuse_push(value, self.highest_amplitude)
         if len(self.frequency) < 2:
             raise SceneError(
                 "frequency of the map must hold two at least, between which edges are found, got "
@@ -155,14 +161,12 @@ def solve_stability(
     model: Compiled, frequency: Any, amplitude: Any, *, modes: int | None, progress: Progress
 ) -> StabilityMap:
     """Look at every frequency and amplitude; see `Model.stability_map`."""
-    f = _increasing(check.numbers(frequency, "frequency", "Hz", sign="positive"), "frequency")
+    given = check.numbers(check.frequencies(frequency), "frequency", "Hz", sign="positive")
+    f = _increasing(given, "frequency")
     a = _increasing(check.numbers(amplitude, "amplitude", "N", sign="nonnegative"), "amplitude")
-    mean, most = model.scene.mean_tension, float(a[-1])
-    if model.scene.rope.bending_stiffness is None and most > mean:
-        raise SceneError(
-            "amplitude must be at most the mean tension for a rope without bending_stiffness, "
-            f"{mean!r} N, got {most!r}"
-        )
+    scene = model.scene
+    highest = scene.mean_tension if scene.rope.bending_stiffness is None else math.inf
+    _refuse_push(float(a[-1]), highest)
     report = reporter(progress)
     system = modal_system(model, checked_modes(model, modes))
     each = exponent(system, f, np.broadcast_to(a, (len(f), len(a))), report=report)
@@ -173,12 +177,21 @@ def solve_stability(
         eigenvalue=system.eigenvalue,
         geometric=system.geometric,
         damping=system.damping,
+        highest_amplitude=highest,
         cost=Cost(
             "composition of order 10",
             len(model.x) - 1,
             2 * len(system.eigenvalue),
         ),
     )
+
+
+def _refuse_push(amplitude: float, highest: float) -> None:
+    if amplitude > highest:
+        raise SceneError(
+            "amplitude must be at most the mean tension for a rope without bending_stiffness, "
+            f"{highest!r} N, got {amplitude!r}"
+        )
 
 
 def _increasing(value: Real, name: str) -> Real:

@@ -204,7 +204,9 @@ def test_undamped_motion_has_no_steady_state(elements):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"frequency": [0.0]}, "frequency must be > 0"),
+        ({"frequency": [0.0]}, "frequency must be at least 1e-100 Hz, got 0.0"),
+        ({"frequency": [1e-300]}, "frequency must be at least 1e-100 Hz, got 1e-300"),
+        ({"drive": ("z", 0.0)}, r"drive must be free to move, got \('z', 0.0\), which a support"),
         ({"amplitude": 0.0}, "amplitude must be a finite number > 0"),
         ({"amplitude": 1e-150}, r"amplitude must lie in 1e-100 ... 1e\+100 N, got 1e-150"),
         ({"amplitude": 1e150}, r"amplitude must lie in 1e-100 ... 1e\+100 N, got 1e\+150"),
@@ -216,6 +218,14 @@ def test_what_has_no_meaning_is_refused(change, message):
     given = {"frequency": [10.0], "drive": ("z", 0.5), "amplitude": 1.0} | change
     with pytest.raises(rd.SceneError, match=message):
         hard().stepped_sine(**given)
+
+
+def test_a_law_that_raises_says_where():
+    part = rd.NodeForce(0.5, lambda t, u, v: 1 / 0)
+    model = rd.Scene(rd.Rope(1.0, 0.2), tension=100.0, parts=[part]).compile(elements=4)
+    with pytest.raises(ZeroDivisionError) as raised:
+        model.stepped_sine([10.0], drive=("z", 0.5), amplitude=1.0)
+    assert "raised by parts[0].law(t=" in raised.value.__notes__[0]
 
 
 @pytest.mark.parametrize(

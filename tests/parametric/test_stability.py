@@ -178,6 +178,7 @@ def test_answer_is_a_table_a_figure_and_a_file(tmp_path):
         ([0.0, 1.0], [1.0], "frequency"),
         ([1.0], [-1.0], "amplitude"),
         ([50.0], [1001.0], "amplitude must be at most the mean tension"),
+        ([1.0, 1e300], [1.0], "must be at most 1e\\+150 Hz, got 1e\\+300"),
     ],
 )
 def test_questions_without_meaning_are_refused(frequency, amplitude, message):
@@ -194,6 +195,8 @@ def test_rope_that_only_twists_is_refused():
 def test_amplitude_of_a_boundary_is_checked():
     with pytest.raises(rd.SceneError, match="amplitude"):
         mapped(STRING, [40.0, 60.0], 1).boundary(-1.0)
+    with pytest.raises(rd.SceneError, match=r"at most the mean tension .* 1000.0 N, got 1500.0"):
+        mapped(STRING, [40.0, 60.0], 1).boundary(1500.0)
 
 
 def test_a_boundary_needs_two_frequencies_to_lie_between():

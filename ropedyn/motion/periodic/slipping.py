@@ -328,4 +328,5 @@ def _left(changes: Real) -> float:
     if late == 0:
         return 0.0
     ratio = math.sqrt(late / early) if early > 0 else math.inf
-    return late * ratio / (1 - ratio) if ratio < 1 else math.inf
+    # the first may have been far larger for another reason, as where friction held until then
+    return late * max(1.0, ratio / (1 - ratio)) if ratio < 1 else math.inf
