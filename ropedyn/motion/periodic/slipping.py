@@ -266,7 +266,7 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
         modes = np.concatenate([now.modes for now in each])
         turns = modes.reshape(len(modes), -1, turn).mean(axis=2)
         motion.append(modes.mean(axis=1))
-        unlike.append((turns - motion[-1][:, None]).ravel())
+        unlike = [*unlike[-LOOKS:], (turns - motion[-1][:, None]).ravel()]
         if not decays.go_on(motion):
             break
         if len(seen) <= LOOKS:
