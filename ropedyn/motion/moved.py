@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ import numpy as np
 from ..base.array import Real
 from ..base.errors import SceneError, SolveError
 from ..chain.compile import compile_scene
-from ..chain.port import moving
+from ..chain.port import Point
 from .history import History
 from .request import Run
 
@@ -29,12 +29,17 @@ class Moved(NamedTuple):
         """Return the largest error of each response over what it is a share of, (responses,)."""
         size = np.abs(self.value).max(axis=1)
         if run.together:
-            kinds = np.array([moving(point) for point in run.responses])
-            size = np.where(kinds[:, None] == kinds, size, 0.0).max(axis=1)
+            size = of_kinds(size, run.responses)
         size = np.maximum(size, run.least)
         error = self.error.max(axis=1)
         none = np.where(error > 0, np.inf, 0.0)
         return np.divide(error, size, out=none, where=size > 0)
+
+
+def of_kinds(size: Real, responses: Sequence[Point]) -> Real:
+    """Return the largest size of all responses of the same kind, such as all forces along z."""
+    kinds = np.array([point[0] for point in responses])
+    return np.asarray(np.where(kinds[:, None] == kinds, size, 0.0).max(axis=1, initial=0.0))
 
 
 def against_spans(run: Run, value: Real, solve: Callable[[Run], History | Moved]) -> Real:

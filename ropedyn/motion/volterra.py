@@ -36,7 +36,7 @@ from .history import History, ended_by
 from .line.grid import is_even
 from .linear import nearest, snapshots_of, within_tolerance
 from .modal.expansion import refuse_losses
-from .moved import Moved, against_spans
+from .moved import Moved, against_spans, of_kinds
 from .request import TOLERANCE, Run
 from .smooth.laws import LawFailure, SmoothLaw
 from .smooth.passage import Runs
@@ -165,12 +165,13 @@ class Stepped:
         return np.array([point in points for point in self.run.responses], dtype=np.bool_)
 
     @computed
-    def free(self) -> float:
-        """What responses move at most without the laws, where friction holds some."""
-        if not self.held.any():
-            return 0.0
+    def free(self) -> Real:
+        """What responses of each kind move at most without laws, where friction holds some."""
         run = self.run
-        return float(np.abs(self._linear(responses=run.responses, order=run.order)).max())
+        if not self.held.any():
+            return np.zeros(len(run.responses))
+        moved = self._linear(responses=run.responses, order=run.order)
+        return of_kinds(np.abs(moved).max(axis=1), run.responses)
 
     def _error(self, failure: Any, when: float, residual: float) -> BaseException:
         if failure is not None:
@@ -260,7 +261,8 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
             before = coarse[1]
             both = runs.apart(found.value, before.value, FALLS)
             known = found._replace(error=found.error + TIMES * both)
-            most = allowed(found.value, tolerance, beside=stepped.free, held=stepped.held)[:, None]
+            rest: dict[str, Any] = {"beside": stepped.free, "held": stepped.held}
+            most = allowed(found.value, tolerance, run.responses, **rest)[:, None]
             if (known.error <= most).all():
                 return stepped, known, None
             # shorter steps do not help where linear motion is not known

@@ -386,6 +386,24 @@ def test_a_point_that_friction_holds_is_as_on_a_support_to_any_tolerance():
     assert held.error[0].max() <= 1e-12 * np.abs(still.value[1]).max()
 
 
+@pytest.mark.parametrize("inertia", [1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("span", [1.0, 10.0, 100.0])
+def test_errors_grow_with_the_time_that_modes_are_held_beside_fast_ones(inertia, span):
+    # squares of rates are known to a part of the largest: 3e-8 of the motion is off after 100 s
+    rope = rd.Rope(1.0, 0.3, bending_stiffness=2.8, rotary_inertia=0.3 * inertia)
+    pushed = {"drive": ("z", 1 / 6), "force": rd.Sine(1.0, 11.0, phase=1.0)}
+    seen = [("z", 1 / 6), ("z", 5 / 6)]
+
+    def moved(part):
+        model = rd.Scene(rope, tension=1000.0, parts=[part]).compile(elements=6, element="rigid")
+        return model.transient(np.linspace(0.0, span, 60), **pushed, response=seen)
+
+    held, still = moved(rd.Dashpot(0.5, 100.0, exponent=0.0)), moved(rd.Support(0.5))
+    assert held.cost.method == "events"
+    # the support's motion is known far better than to what it says
+    assert (np.abs(held.value - still.value) <= held.error).all()
+
+
 @pytest.mark.parametrize("last", np.linspace(0.4, 0.44, 25))
 def test_the_last_time_is_answered_wherever_the_last_event_is(last):
     string = rd.Scene(rd.Rope(2.6, 0.41), tension=3700.0, parts=[rd.Dashpot(1.3, 20.0, exponent=0)])

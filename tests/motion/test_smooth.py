@@ -345,6 +345,20 @@ def worst_of(seed, count):
     return np.array(said), np.array(relative)
 
 
+def test_a_force_beside_motion_makes_it_no_worse():
+    """Newtons beside metres: of steel motion along it is 1e-9 of the force."""
+    rope, tolerance = rd.Rope(1.0, 0.3, axial_stiffness=1e10), 1e-4
+    part = rd.Dashpot(0.4, 100.0, coordinate="x", exponent=2.0)
+    model = rd.Scene(rope, tension=1000.0, parts=[part]).compile()
+    speed = np.sqrt(1e10 / 0.3)
+    pushed = {"drive": ("x", 0.2), "force": rd.Sine(1e4, float(0.4 * speed))}
+    time = np.linspace(0.0, 6 / speed, 40)
+    seen = [("x", 0.99), ("F_x", 0.2)]
+    history = model.transient(time, **pushed, response=seen, tolerance=tolerance)
+    largest = np.abs(history.value).max(axis=1)
+    assert (history.error.max(axis=1) <= tolerance * largest).all()
+
+
 @pytest.mark.claim(
     "Random strings under smooth laws, sines, blows and steps: largest error over what is said",
     reference="solve_ivp of the assembled equations to 1e-13",

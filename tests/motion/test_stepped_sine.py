@@ -220,6 +220,32 @@ def test_what_has_no_meaning_is_refused(change, message):
         hard().stepped_sine(**given)
 
 
+def test_what_symmetry_keeps_at_rest_is_disturbed():
+    """In step both stops bend the motion; out of step it grows by rounding, in 500 periods."""
+    f, zeta = 60.152, 0.014168
+    parts = [
+        rd.Dashpot(0.5, 0.0401888, exponent=0.0),
+        rd.Stop(0.25, 266.959, side=-1),
+        rd.Stop(0.75, 266.959, side=-1),
+    ]
+    damping = rd.ViscousDamping(0.2 * zeta * np.pi * np.sqrt(1000.0))
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping, parts=parts)
+    model = scene.compile(elements=4, element="rigid")
+    seen = [("z", 0.25), ("z", 0.75)]
+    stepped = model.stepped_sine([f], drive=("z", 0.5), amplitude=1.0, response=seen)
+    # a blow of a part of what drives, then long enough
+    time = np.arange(500 * 32 + 1) / (32 * f)
+    force = [rd.Sine(1.0, f, phase=np.pi / 2), rd.Impulse(1e-4 / f)]
+    history = model.transient(
+        time, drive=[("z", 0.5), ("z", 0.25)], force=force, response=seen, partial=True
+    )
+    turn = np.exp(-2j * np.pi * f * time[-257:-1])
+    true = (2 * history.value[:, -257:-1] * turn).mean(axis=1)
+    # the 31st harmonic is seen as the first in 32 samples
+    assert np.abs(stepped.value[:, 0] / true - 1).max() < 5e-3
+    assert not stepped.stable.any()
+
+
 def test_a_law_that_raises_says_where():
     part = rd.NodeForce(0.5, lambda t, u, v: 1 / 0)
     model = rd.Scene(rd.Rope(1.0, 0.2), tension=100.0, parts=[part]).compile(elements=4)

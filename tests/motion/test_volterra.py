@@ -52,7 +52,7 @@ def test_rigid_chains_move_as_by_steps_of_their_modes(kind):
     look = OutputTimes(slice(0, 2), TIME, 0)
     system = CoupledSystem.coupled(run, ("z", "beta"), [MIDDLE, PUSH], [look])
     assert system.coupling is not None
-    steps = agree(system, 1e-5, run, CoupledPassage)
+    steps = agree(system, 1e-5, run, run.responses, CoupledPassage)
     found = integrate(run)
     assert model.transient(TIME, **asked).cost.method == "steps"
     assert (np.abs(found.value - steps.looked[0]) <= found.error + 3 * steps.step_error).all()

@@ -30,6 +30,7 @@ LONGEST = 100_000  # A motion that changes after so many periods is said not to 
 DECAY = 4.0  # After so many time constants the changes are compared with those before,
 LEAST = 256  # and not before so many periods;
 UNDAMPED = 4096  # after so many where nothing but friction damps.
+DISTURBED = 1e-6  # Of the motion, how it is disturbed once: it must come back.
 ALIKE = 1e-4  # Periods that differ by less than this part of what is asked differ by rounding.
 AS_BEFORE = 0.9  # Changes that are not below so much of those before do not decay.
 TOLERANCE = 1e-3  # Of the steady state where none is given.
@@ -64,6 +65,9 @@ class Goes(Protocol):
 
     def window(self, frequency: float, periods: range) -> MeanAmplitudes:
         """Follow some periods."""
+
+    def disturb(self, speed: Real) -> None:
+        """Let the modes move faster by these, (k,)."""
 
 
 def slipping(asked: SteppedSine, turn: Callable[[float], int]) -> FRF:
@@ -114,6 +118,10 @@ class PhasesGoOn:
     def is_whole(self) -> bool:
         """Whether no mode is left out."""
         return not math.isfinite(self.one.system.states.beyond)
+
+    def disturb(self, speed: Real) -> None:
+        """Let the modes move faster by these, (k,)."""
+        self.now = self.now._replace(v=self.now.v + speed)
 
     def window(self, frequency: float, periods: range) -> MeanAmplitudes:
         """Follow some periods."""
@@ -179,6 +187,10 @@ class StepsGoOn:
         self.sigma = system.modes.sigma
         self.state = np.zeros((2, len(system.modes.sigma)))  # all of the motion
         self.count = FEWEST
+
+    def disturb(self, speed: Real) -> None:
+        """Let the modes move faster by these, (k,)."""
+        self.state[1] += speed
 
     def window(self, frequency: float, periods: range) -> MeanAmplitudes:
         """Follow some periods."""
@@ -267,6 +279,10 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
         turns = modes.reshape(len(modes), -1, turn).mean(axis=2)
         motion.append(modes.mean(axis=1))
         unlike = [*unlike[-LOOKS:], (turns - motion[-1][:, None]).ravel()]
+        if k == 0:  # what symmetry keeps at rest may grow too
+            speed = DISTURBED * 2 * math.pi * frequency * np.abs(motion[0]).max(initial=0.0)
+            for one in rows:
+                one.disturb(speed * np.random.default_rng(0).normal(size=len(one.sigma)))
         if not decays.go_on(motion):
             break
         if len(seen) <= LOOKS:

@@ -24,9 +24,9 @@ from .walk import PhaseWalk, Visit
 
 MODES, MOST = 64, 128  # Of continuous spans and long chains, at first and at most.
 NUDGE = 1e-11  # Rounding is at most this part of what drives.
+OFF = 64 * np.finfo(float).eps  # Squares of poles are known to this part.
 MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.
 ROUNDED = 256 * np.finfo(float).eps  # Of the modes that move a point, what rounding moves it.
-LEFT = 4 * ROUNDED
 HELD = 1e-9  # Of the modes that move a point: where it moves less, it is held.
 
 
@@ -49,7 +49,7 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
     whole, until = True, math.inf
     components = moving_components(run, looks, modes)
     for one in components:
-        walk, reached = PhaseWalk(one.system), float(run.time[0])
+        walk, reached = PhaseWalk(one.system, OFF if nudge else 0.0), float(run.time[0])
         forces = [run.forces[k] for k in one.drives]
         try:
             for visit in walk.visits(rest(one, nudge), pieces(forces, run.time, 1 + nudge)):
@@ -171,11 +171,10 @@ def _rounding(found: Followed) -> Real:
 def _allowed(found: Followed, tolerance: float) -> Real:
     """Return the error of each response that is within a tolerance, (responses, 1).
 
-    What is held is known to what rounding leaves, a few times its estimate.
+    What is held, or stands still for another reason, may be off by what makes it nothing.
     """
-    value, size = np.abs(found.seen[0]).max(axis=1, initial=0.0), found.size[0]
-    most = tolerance * np.maximum(value, HELD * size)
-    return np.where(value > HELD * size, most, np.maximum(most, LEFT * size))[:, None]
+    value, nothing = np.abs(found.seen[0]).max(axis=1, initial=0.0), HELD * found.size[0]
+    return np.where(value > nothing, tolerance * value, nothing)[:, None]
 
 
 def _sure_until(run: Run, found: Followed, error: Real) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from ...base.array import Complex, Real
 
 DOUBLE = 1e-10  # Equal poles are split by this share of their modulus squared.
+SHARE = 0.25  # Squares of coupled modes are known to this times a part of the largest.
 STILL = 1e-5  # A pole that is 0 turns by this angle over the record.
 
 
@@ -20,20 +21,28 @@ class Poles(NamedTuple):
     left: Complex  # (j, n)
 
 
-def poles_of(A: Real, modes: int, span: float) -> Poles:
-    """Return the poles of a phase, in closed form where its modes stay uncoupled."""
+def poles_of(A: Real, modes: int, span: float, *, off: float = 0.0) -> Poles:
+    """Return the poles of a phase, in closed form where its modes stay uncoupled.
+
+    Their squares are off by a part of their own, where modes are coupled by a share of it of the
+    largest too.
+    """
     S, C = -A[modes:, :modes], -A[modes:, modes : 2 * modes]
     if A.shape[0] == 2 * modes:
         if not _off(C).any() and not _off(S).any():
-            return _oscillators(np.diag(C) / 2, np.diag(S), np.eye(modes), span)
+            return _oscillators(np.diag(C) / 2, (1 + off) * np.diag(S), np.eye(modes), span)
         damping = np.diag(C)
         size = 64 * np.finfo(float).eps * np.abs(damping).max(initial=0.0)
         if np.ptp(damping) <= size and (np.abs(_off(C)) <= size).all():
             square, W = np.linalg.eigh((S + S.T) / 2)
+            # of modes that are alike one more than the other, so that they part too
+            each = off * (1 + 0.5 * (-1.0) ** np.arange(modes))
+            square = (1 + each) * square + SHARE * each * np.abs(square).max(initial=0.0)
             return _oscillators(np.full(modes, damping.mean() / 2), square, W, span)
     rate, right = np.linalg.eig(A)
     left = np.linalg.inv(right)
     kept = rate.imag >= 0
+    rate = rate + np.where(rate.imag > 0, 1j * off * np.abs(rate).max(initial=0.0), 0.0)
     weight = np.where(rate[kept].imag > 0, 2.0, 1.0)
     return Poles(
         rate[kept].astype(np.complex128),

@@ -35,10 +35,10 @@ class Phase:
     loss: Real  # (j, n) magnitude of what z is told by
 
     @classmethod
-    def of(cls, system: PhaseSystem, mode: tuple[int, ...]) -> Phase:
-        """Assemble it and find its poles."""
+    def of(cls, system: PhaseSystem, mode: tuple[int, ...], off: float) -> Phase:
+        """Assemble it and find its poles, or such as are off."""
         m = matrices(system, mode)
-        poles = poles_of(m.A, m.E.shape[1], system.span)
+        poles = poles_of(m.A, m.E.shape[1], system.span, off=off)
         left = poles.left
         return cls(mode, m, poles, m.Y @ poles.right, left @ m.Bd, left @ m.Bs, np.abs(left))
 
@@ -96,8 +96,8 @@ class Visit(NamedTuple):
 class PhaseWalk:
     """Motion of one component from event to event."""
 
-    def __init__(self, system: PhaseSystem) -> None:
-        self.system = system
+    def __init__(self, system: PhaseSystem, off: float = 0.0) -> None:
+        self.system, self.off = system, off
         self.phases: dict[tuple[int, ...], Phase] = {}
         self.events: list[tuple[float, int]] = []  # when, and of which law
 
@@ -161,7 +161,7 @@ class PhaseWalk:
 
     def _phase(self, mode: tuple[int, ...]) -> Phase:
         if mode not in self.phases:
-            self.phases[mode] = Phase.of(self.system, mode)
+            self.phases[mode] = Phase.of(self.system, mode, self.off)
         return self.phases[mode]
 
     def _enter(

@@ -8,8 +8,10 @@ modes that are left out.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +32,7 @@ from ..coupled.system import CoupledSystem, moving_together, refuse_points, tens
 from ..history import History, ended_by
 from ..linear import solve_linear
 from ..modal.superposition import sizes
-from ..moved import against_spans
+from ..moved import against_spans, of_kinds
 from ..request import TOLERANCE, Run
 from ..states import LARGEST, softens, without_dashpots
 from ..undamped import losses_of
@@ -132,16 +134,25 @@ class Agreed:
 
 
 def allowed(
-    value: Real, tolerance: float, *, beside: float = 0.0, held: Flags | bool = False
+    value: Real,
+    tolerance: float,
+    responses: Sequence[Point],
+    *,
+    beside: Real | float = 0.0,
+    held: Flags | bool = False,
+    rests: bool = False,
 ) -> Real:
-    """Return the error of each response that is within a tolerance: of rounding, as much again.
+    """Return the error of each response that is within a tolerance, (responses,).
 
-    Of what is held, and so at rest, relative to the largest of all and what moves beside them.
+    Of what is held it is relative to the largest of its kind, or to what moves beside it; where
+    all may rest, what is nothing beside that may be off by as much.
     """
     most = np.abs(value).max(axis=1, initial=0.0)
-    largest = max(float(most.max(initial=0.0)), beside)
-    noise = max(NOTHING * largest, float(np.finfo(float).tiny))
-    return np.where(held, tolerance * largest, np.where(most > noise, tolerance * most, noise))
+    largest = np.maximum(of_kinds(most, responses), beside)
+    nothing = np.maximum(NOTHING * largest, np.finfo(float).tiny)
+    own = tolerance * np.maximum(most, nothing)
+    own = np.where(most <= nothing, nothing, own) if rests else own
+    return np.where(held, tolerance * largest, own)
 
 
 def rounding(value: Real, time: Real) -> Real:
@@ -152,7 +163,11 @@ def rounding(value: Real, time: Real) -> Real:
 
 
 def agree(
-    system: LawSystem, tolerance: float, run: Run, passage: type[LawPassage] = LawPassage
+    system: LawSystem,
+    tolerance: float,
+    run: Run,
+    watched: Sequence[Point],
+    passage: type[LawPassage] = LawPassage,
 ) -> Agreed:
     """Halve the steps until two runs agree within the tolerance, and return the finer."""
     linear, h, time = system.without_laws(), system.first_step, system.looks[0].time
@@ -184,8 +199,9 @@ def agree(
         )
         if passed.error is None and coarse is not None:
             held = system.held(len(driven), passed.largest)
-            beside = float(driven.max(initial=0.0)) if system.is_sharp else 0.0
-            most = allowed(looked[0], tolerance, beside=beside, held=held)
+            beside = of_kinds(driven, watched) if system.is_sharp else 0.0
+            rest: dict[str, Any] = {"beside": beside, "held": held, "rests": system.is_sharp}
+            most = allowed(looked[0], tolerance, watched, **rest)
             most = np.maximum(most, tolerance * NOTHING * driven)[:, None]
             bends = (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
             falls = BENT_FALLS if bends else system.falls
@@ -232,15 +248,17 @@ def component_motion(
 ) -> Agreed:
     """Take more modes until those left out do not show, where there are endless many."""
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    first = looks[0].output
+    watched = points[first.start : first.stop]
     if tension_of(run.model, component) is not None or not _is_smooth(run):
         coupled = CoupledSystem.coupled(run, component, points, looks)
         passage = StretchedPassage if coupled.is_plain else CoupledPassage
-        return agree(coupled, tolerance, run, passage)
+        return agree(coupled, tolerance, run, watched, passage)
     asked = LawQuestion(component, laws_on(run.model, component), points, looks)
     count = MODES
     while True:
         system = LawSystem.of(run, asked, count)
-        found = agree(system, tolerance, run, LawPassage)
+        found = agree(system, tolerance, run, watched, LawPassage)
         if found.error is not None or not np.isfinite(system.beyond):
             return found
         fewer = LawSystem.of(run, asked, count // 2)
@@ -250,7 +268,8 @@ def component_motion(
         apart = np.abs(looked - found.looked[0]).max(axis=1, initial=0.0)
         found.truncation = apart if passed.error is None else np.full(len(apart), np.inf)
         wrong = found.truncation + found.step_error.max(axis=1, initial=0.0)
-        worst = tolerance * float((wrong / allowed(found.looked[0], tolerance)).max(initial=0.0))
+        most = allowed(found.looked[0], tolerance, watched)
+        worst = tolerance * float((wrong / most).max(initial=0.0))
         found.error = passed.error if passed.settles else None
         if found.error is not None or worst <= tolerance:
             return found
