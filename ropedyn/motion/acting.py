@@ -62,11 +62,8 @@ def acting_laws(model: Compiled, coordinates: Collection[str] | None = None) -> 
 
 def held_points(laws: Sequence[ActingLaw], force: Real) -> set[Point]:
     """Return what friction holds that never slips: forces of laws have been so large at most."""
-    points = set[Point]()
-    for one, largest in zip(laws, force):
-        if one.is_friction and one.law.value[1] == 0 and largest < (1 - SLIPS) * one.law.value[0]:
-            points.add(one.point)
-    return points
+    both = [(one, *one.law.value, most) for one, most in zip(laws, force) if one.is_friction]
+    return {one.point for one, size, p, most in both if p == 0 and most < (1 - SLIPS) * size}
 
 
 def core_numbers(laws: Sequence[Law]) -> tuple[NDArray[np.int32], Real]:

@@ -75,11 +75,6 @@ class CoreActing(NamedTuple):
         return tuple(one.point for one in self.acting)
 
     @property
-    def is_sharp(self) -> bool:
-        """Whether some bend or jump where contact begins or velocities turn."""
-        return any(one.is_sharp for one in self.acting)
-
-    @property
     def core(self) -> tuple[NDArray[np.int32], Real, tuple[Callable[..., Any] | None, ...]]:
         """What `_core.volterra` takes."""
         return self.kind, self.value, tuple(one.call for one in self.told)
@@ -276,7 +271,8 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
 def _finer(run: Run, laws: CoreActing, count: int) -> int:
     """Return how many steps the next run takes: ends of others would see a turn as they did."""
     times = len(run.time) - 1
-    if not laws.is_sharp or (is_even(run.time) and count < times):
+    is_sharp = any(one.is_sharp for one in laws.acting)
+    if not is_sharp or (is_even(run.time) and count < times):
         return 2 * count
     return 2 * count + (times if is_even(run.time) else 1)
 

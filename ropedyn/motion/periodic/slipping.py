@@ -114,11 +114,6 @@ class PhasesGoOn:
         self.now = rest(one, 0.0)
         self.mode: tuple[int, ...] | None = None
 
-    @property
-    def is_whole(self) -> bool:
-        """Whether no mode is left out."""
-        return not math.isfinite(self.one.system.states.beyond)
-
     def disturb(self, speed: Real) -> None:
         """Let the modes move faster by these, (k,)."""
         self.now = self.now._replace(v=self.now.v + speed)
@@ -167,7 +162,8 @@ def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[Settled]:
         return [PhasesGoOn(one, push, run.responses) for one in found]
 
     rows = of(MODES)
-    fewer = None if all(one.is_whole for one in rows) else of(MODES // 2)
+    is_whole = not any(math.isfinite(each.one.system.states.beyond) for each in rows)
+    fewer = None if is_whole else of(MODES // 2)
     for f in asked.frequency.tolist():
         found = _settled(asked, rows, f, 1)
         if fewer is not None:

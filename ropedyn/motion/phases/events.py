@@ -169,10 +169,7 @@ def _rounding(found: Followed) -> Real:
 
 
 def _allowed(found: Followed, tolerance: float) -> Real:
-    """Return the error of each response that is within a tolerance, (responses, 1).
-
-    What is held, or stands still for another reason, may be off by what makes it nothing.
-    """
+    """Return the error within a tolerance, (responses, 1); of what is still what makes it so."""
     value, nothing = np.abs(found.seen[0]).max(axis=1, initial=0.0), HELD * found.size[0]
     return np.where(value > nothing, tolerance * value, nothing)[:, None]
 

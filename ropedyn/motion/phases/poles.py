@@ -22,11 +22,7 @@ class Poles(NamedTuple):
 
 
 def poles_of(A: Real, modes: int, span: float, *, off: float = 0.0) -> Poles:
-    """Return the poles of a phase, in closed form where its modes stay uncoupled.
-
-    Their squares are off by a part of their own, where modes are coupled by a share of it of the
-    largest too.
-    """
+    """Return the poles of a phase, in closed form where its modes stay uncoupled, or some off."""
     S, C = -A[modes:, :modes], -A[modes:, modes : 2 * modes]
     if A.shape[0] == 2 * modes:
         if not _off(C).any() and not _off(S).any():

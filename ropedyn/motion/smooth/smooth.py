@@ -142,10 +142,9 @@ def allowed(
     held: Flags | bool = False,
     rests: bool = False,
 ) -> Real:
-    """Return the error of each response that is within a tolerance, (responses,).
+    """Return the error of each response that is within a tolerance, of what is held beside others.
 
-    Of what is held it is relative to the largest of its kind, or to what moves beside it; where
-    all may rest, what is nothing beside that may be off by as much.
+    Where all may rest, what is nothing beside them may be off by as much.
     """
     most = np.abs(value).max(axis=1, initial=0.0)
     largest = np.maximum(of_kinds(most, responses), beside)
