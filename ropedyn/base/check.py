@@ -168,9 +168,9 @@ def matrix(
     return array.astype(kind)
 
 
-def frequencies(value: Any) -> NDArray[np.float64]:
+def frequencies(value: Any, *, sign: str = "nonnegative") -> NDArray[np.float64]:
     """Return frequencies [Hz] whose squares do not overflow."""
-    f = numbers(value, "frequency", "Hz", sign="nonnegative")
+    f = numbers(value, "frequency", "Hz", sign=sign)
     if f.max() > HIGHEST:
         where = int(f.argmax())
         raise SceneError(

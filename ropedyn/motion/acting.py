@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.array import Real
+from ..base.array import Flags, Real
 from ..chain.compiled import Compiled
 from ..chain.port import Point, is_held
 from ..scene.parts.node import Law
@@ -60,10 +60,11 @@ def acting_laws(model: Compiled, coordinates: Collection[str] | None = None) -> 
     return [one for one in some if not is_held(model.chain, *place, one.point)]
 
 
-def held_points(laws: Sequence[ActingLaw], force: Real) -> set[Point]:
-    """Return what friction holds that never slips: forces of laws have been so large at most."""
+def held_of(points: Sequence[Point], laws: Sequence[ActingLaw], force: Real) -> Flags:
+    """Say which points friction holds that never slips: forces of laws were so large at most."""
     both = [(one, *one.law.value, most) for one, most in zip(laws, force) if one.is_friction]
-    return {one.point for one, size, p, most in both if p == 0 and most < (1 - SLIPS) * size}
+    held = {one.point for one, size, p, most in both if p == 0 and most < (1 - SLIPS) * size}
+    return np.array([point in held for point in points], dtype=np.bool_)
 
 
 def core_numbers(laws: Sequence[Law]) -> tuple[NDArray[np.int32], Real]:

@@ -83,7 +83,7 @@ class Run:
         drives, given = _driven(model, kind, drive, force, t)
         loads, kicks = kind.released(model, start), kind.kicked(model, velocity)
         for name, begun in (("start", loads), ("velocity", kicks)):
-            _refuse_held(model, kind, begun.given, name)
+            refuse_held(model, kind, begun.given, name)
         run = cls(
             model,
             t,
@@ -230,14 +230,14 @@ def _driven(
     if drive is None:
         return (), ()
     drives, several = kind.driven(model, drive)
-    _refuse_held(model, kind, (point for point in drives if not is_end(point)), "drive")
+    refuse_held(model, kind, drives, "drive")
     return drives, _acting_forces(drives, force, time, several=several)
 
 
-def _refuse_held(model: Any, kind: Kind, places: Iterable[Point], name: str) -> None:
-    """Refuse to push what a support holds."""
+def refuse_held(model: Any, kind: Kind, places: Iterable[Point], name: str) -> None:
+    """Refuse to push what a support holds; ends are moved."""
     for point in places:
-        if kind.holds(model, point):
+        if not is_end(point) and kind.holds(model, point):
             raise SceneError(f"{name} must be free to move, got {point}, which a support holds")
 
 

@@ -30,7 +30,7 @@ from ..base.progress import silent
 from ..chain.compiled import Compiled
 from ..chain.port import Point
 from ..scene.force import Samples, Step
-from .acting import ActingLaw, acting_laws, core_numbers, held_points
+from .acting import ActingLaw, acting_laws, core_numbers, held_of
 from .coupled.energy import of_chain
 from .history import History, ended_by
 from .line.grid import is_even
@@ -156,8 +156,8 @@ class Stepped:
     @computed
     def held(self) -> Flags:
         """Which responses friction holds all the time."""
-        points = held_points(self.laws.acting, np.abs(self.force).max(axis=1))
-        return np.array([point in points for point in self.run.responses], dtype=np.bool_)
+        largest = np.abs(self.force).max(axis=1)
+        return held_of(self.run.responses, self.laws.acting, largest)
 
     @computed
     def free(self) -> Real:
@@ -256,8 +256,8 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
             before = coarse[1]
             both = runs.apart(found.value, before.value, FALLS)
             known = found._replace(error=found.error + TIMES * both)
-            rest: dict[str, Any] = {"beside": stepped.free, "held": stepped.held}
-            most = allowed(found.value, tolerance, run.responses, **rest)[:, None]
+            free, held = stepped.free, stepped.held
+            most = allowed(found.value, tolerance, run.responses, driven=free, held=held)[:, None]
             if (known.error <= most).all():
                 return stepped, known, None
             # shorter steps do not help where linear motion is not known

@@ -161,8 +161,7 @@ def solve_stability(
     model: Compiled, frequency: Any, amplitude: Any, *, modes: int | None, progress: Progress
 ) -> StabilityMap:
     """Look at every frequency and amplitude; see `Model.stability_map`."""
-    given = check.numbers(check.frequencies(frequency), "frequency", "Hz", sign="positive")
-    f = _increasing(given, "frequency")
+    f = _increasing(check.frequencies(frequency, sign="positive"), "frequency")
     a = _increasing(check.numbers(amplitude, "amplitude", "N", sign="nonnegative"), "amplitude")
     scene = model.scene
     highest = scene.mean_tension if scene.rope.bending_stiffness is None else math.inf

@@ -22,7 +22,7 @@ from ...chain.port import Point, is_force, local, locate, moving, ports
 from ...chain.tip import is_tip
 from ...response.moved_end import is_end
 from ...scene.tension import Tension
-from ..acting import ActingLaw, acting_laws, held_points
+from ..acting import ActingLaw, acting_laws, held_of
 from ..request import Run
 from ..smooth.collocation import Oscillating
 from ..smooth.laws import SmoothLaw
@@ -36,7 +36,6 @@ FIRST = 512  # A run has so many steps at least.
 class CoupledSystem(LawSystem):
     """Components whose modes are coupled; the amplitudes are the first of its outputs."""
 
-    outputs: Sequence[Point]  # that are asked for
     acting: list[ActingLaw]
     row: Real  # (laws, k) how modes move the laws' points
     push: Real  # (drives, k) and what drives
@@ -78,7 +77,6 @@ class CoupledSystem(LawSystem):
             time=run.time,
             looks=looks,
             beyond=np.inf,
-            outputs=outputs,
             acting=acting,
             row=modes.rows([one.point for one in acting])[0],
             push=push,
@@ -112,10 +110,9 @@ class CoupledSystem(LawSystem):
         """Whether some law is."""
         return any(one.is_sharp for one in self.acting)
 
-    def held(self, count: int, largest: Real) -> Flags:
-        """Say which of the first outputs friction holds, whose forces have been so large [N]."""
-        points = held_points(self.acting, largest)
-        return np.array([point in points for point in self.outputs[:count]], dtype=np.bool_)
+    def held(self, points: Sequence[Point], largest: Real) -> Flags:
+        """Say which points laws hold, whose forces have been so large [N]."""
+        return held_of(points, self.acting, largest)
 
     @property
     def finer(self) -> float:

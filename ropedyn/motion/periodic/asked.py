@@ -17,12 +17,11 @@ from ...base.progress import reporter
 from ...base.unit import QUANTITIES, push_unit
 from ...chain.compiled import Compiled
 from ...chain.place import observed, points
-from ...chain.port import Point, is_held
+from ...chain.port import Point
 from ...response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ...response.harmonic import mesh_of_frf
-from ...response.moved_end import is_end
 from ...scene.damping import having
-from ..request import why_not_linear
+from ..request import STRAIGHT, refuse_held, why_not_linear
 
 LEAST = 1e-100  # Of amplitudes and frequencies: squares of motion are numbers.
 
@@ -65,8 +64,7 @@ class SteppedSine:
             raise SceneError(
                 f"frequency must be at least {LEAST:g} Hz, got {least!r}: at 0 that is `static`"
             )
-        if not is_end(drives[0]) and is_held(model.chain, model.x, model.coordinates, drives[0]):
-            raise SceneError(f"drive must be free to move, got {drives[0]}, which a support holds")
+        refuse_held(model, STRAIGHT, drives, "drive")
         for one in having(model.scene.dampings, "loss"):
             raise SceneError(
                 "damping must be in proportion to velocity, such as StiffnessDamping(gamma) with "

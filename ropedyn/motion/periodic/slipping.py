@@ -162,8 +162,7 @@ def _by_phases(asked: SteppedSine, run: Run, push: Sine) -> Iterator[Settled]:
         return [PhasesGoOn(one, push, run.responses) for one in found]
 
     rows = of(MODES)
-    is_whole = not any(math.isfinite(each.one.system.states.beyond) for each in rows)
-    fewer = None if is_whole else of(MODES // 2)
+    fewer = None if all(each.one.is_whole for each in rows) else of(MODES // 2)
     for f in asked.frequency.tolist():
         found = _settled(asked, rows, f, 1)
         if fewer is not None:

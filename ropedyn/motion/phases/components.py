@@ -41,6 +41,11 @@ class Moving:
     # of each look the outputs that are on it, and which of its points these are
     watched: list[tuple[slice, list[int]]]
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether no mode is left out."""
+        return not np.isfinite(self.system.states.beyond)
+
 
 def moving_components(run: Run, looks: Sequence[Look], modes: int) -> list[Moving]:
     """Return the components that are pushed."""

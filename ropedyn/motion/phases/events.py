@@ -65,7 +65,7 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
             until = reached if one is components[-1] else float(run.time[0])
             break
         events += [at for at, _ in walk.events]
-        whole = whole and not np.isfinite(one.system.states.beyond)
+        whole = whole and one.is_whole
     return Followed(seen, sizes, sorted(events), whole, modes, until)
 
 

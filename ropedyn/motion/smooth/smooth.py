@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -138,16 +137,19 @@ def allowed(
     tolerance: float,
     responses: Sequence[Point],
     *,
-    beside: Real | float = 0.0,
+    driven: Real | float = 0.0,
     held: Flags | bool = False,
     rests: bool = False,
 ) -> Real:
-    """Return the error of each response that is within a tolerance, of what is held beside others.
+    """Return the error of each response within a tolerance, beside what drives alone move.
 
-    Where all may rest, what is nothing beside them may be off by as much.
+    What is held counts beside the others; where all may rest, what is nothing may be all off.
     """
     most = np.abs(value).max(axis=1, initial=0.0)
-    largest = np.maximum(of_kinds(most, responses), beside)
+    if rests:
+        largest = of_kinds(np.maximum(most, driven), responses)
+    else:
+        largest = np.maximum(of_kinds(most, responses), driven)
     nothing = np.maximum(NOTHING * largest, np.finfo(float).tiny)
     own = tolerance * np.maximum(most, nothing)
     own = np.where(most <= nothing, nothing, own) if rests else own
@@ -197,16 +199,14 @@ def agree(
             passage is CoupledPassage,
         )
         if passed.error is None and coarse is not None:
-            held = system.held(len(driven), passed.largest)
-            beside = of_kinds(driven, watched) if system.is_sharp else 0.0
-            rest: dict[str, Any] = {"beside": beside, "held": held, "rests": system.is_sharp}
-            most = allowed(looked[0], tolerance, watched, **rest)
-            most = np.maximum(most, tolerance * NOTHING * driven)[:, None]
+            held = system.held(watched, passed.largest)
+            rests = system.is_sharp
+            most = allowed(looked[0], tolerance, watched, driven=driven, held=held, rests=rests)
             bends = (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
             falls = BENT_FALLS if bends else system.falls
             wrong = reach(falls) * runs.apart(looked[0], coarse[0], falls)
             found.step_error = wrong + rounding(looked[0], time)
-            worst = tolerance * float((found.step_error / most).max(initial=0.0))
+            worst = tolerance * float((found.step_error / most[:, None]).max(initial=0.0))
             if worst <= tolerance:
                 return _cancelled(found, system, tolerance, held)
         hard += not passed.settles

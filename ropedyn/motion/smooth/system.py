@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -79,9 +80,9 @@ class LawSystem:
         """Whether some law jumps or bends where velocities turn or contact begins."""
         return False
 
-    def held(self, count: int, _largest: Real) -> Flags:
-        """Say which of the first outputs laws hold, whose forces have been so large [N]."""
-        return np.zeros(count, dtype=np.bool_)
+    def held(self, points: Sequence[Point], _largest: Real) -> Flags:
+        """Say which points laws hold, whose forces have been so large [N]."""
+        return np.zeros(len(points), dtype=np.bool_)
 
     @property
     def falls(self) -> float:
