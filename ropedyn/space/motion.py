@@ -20,7 +20,7 @@ from ..motion.history import History
 from ..motion.line.transfer import growth_below
 from ..motion.linear import solve_linear, within_tolerance
 from ..motion.modal.expansion import refuse_losses
-from ..motion.request import Kind, Run
+from ..motion.request import Kind, Run, refuse_held
 from ..motion.start import Begun
 from ..response.deflection import Deflection, summed_loads
 from ..response.frf import FRF
@@ -69,9 +69,8 @@ def solve_stepped(
             f"branches must be False for {in_space(model.scene)}, whose linear motion has one, got "
             f"{check.shown(branches)}"
         )
-    f = check.frequencies(frequency)
-    if not f.min() > 0:
-        raise SceneError(f"frequency must be > 0 [Hz], got {float(f.min())!r}: that is `static`")
+    f = check.frequencies(frequency, sign="positive")
+    refuse_held(model, IN_SPACE, drives, "drive")
     check.number(amplitude, "amplitude", push_unit(drives[0]), sign="positive")
     check.optional(tolerance, "tolerance", sign="positive")
     refuse_losses(model)  # type: ignore[arg-type]  # of a scene

@@ -200,7 +200,8 @@ def test_stepped_sine_is_the_frequency_response():
     [
         ({"branches": True}, "branches must be False for a rope on an axis"),
         ({"drive": [AT, SEEN]}, "drive must be one point, got 2"),
-        ({"frequency": [0.0]}, "frequency must be > 0"),
+        ({"drive": ("z", 0.0)}, r"drive must be free to move, got \('z', 0"),
+        ({"frequency": [0.0]}, r"frequency\[0\] must be a finite number > 0"),
         ({"amplitude": 0.0}, "amplitude must be a finite number > 0"),
     ],
 )
