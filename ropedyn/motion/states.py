@@ -39,6 +39,8 @@ EQUAL = 1e-9  # Eigenvalues that differ by this share are one, of as many shapes
 ROUND = 1e-11  # What modes leave of this share is rounding.
 FEW = 16  # Nodes whose damping is not as their mass are points of their own, at most.
 UNMOVED = 1e-20  # Below this share of the largest residue of a point it does not move.
+PROBES, GOLDEN = 9, 0.6180339887498949  # Multiples without whole turns are spread evenly.
+SEEN = 1e-4  # Modes that lie close together are told apart by points that see so much of each.
 
 
 class Resistance(NamedTuple):
@@ -218,13 +220,19 @@ def states(
         if len(ratio) < len(eigenvalue):
             beyond = float(np.sqrt(eigenvalue[len(ratio)]))
             eigenvalue, error = eigenvalue[: len(ratio)], error[: len(ratio)]
-    asked = UndampedResponses(model, component, list(inputs), list(outputs))
     circles = contour.on_a_line(eigenvalue, error, beyond**2)
+    # each point once, what is pushed and watched there is one; others tell close modes apart
+    probes = _probes(model, component) if (circles.size > 1).any() else []
+    drives, responses = ([*dict.fromkeys([*one, *probes])] for one in (inputs, outputs))
+    asked = UndampedResponses(model, component, drives, responses)
     residue, rest = _parted(asked, eigenvalue, circles, beyond)
-    left = np.zeros(rest.shape)
+    left = np.zeros((len(outputs), len(inputs)))
     if np.isfinite(beyond):
-        left = asked.bounded(lambda own: _parted(own, eigenvalue, circles, beyond)[1]).T
-    own, push, seen = _factored(residue, eigenvalue, asked)
+        plain = UndampedResponses(model, component, list(inputs), list(outputs))
+        left = plain.bounded(lambda own: _parted(own, eigenvalue, circles, beyond)[1]).T
+    own, push, seen = _factored(residue, eigenvalue, circles, asked)
+    i, o = [drives.index(p) for p in inputs], [responses.index(p) for p in outputs]
+    push, seen, rest = push[:, i], seen[o], rest[np.ix_(o, i)]
     omega = np.sqrt(np.maximum(eigenvalue, 0.0))
     gamma, drag = closed.soften.real, closed.drag.real
     sigma = ratio * omega + (drag + gamma * eigenvalue) / 2
@@ -299,6 +307,12 @@ def _eigenvalues(
     return value, beyond, error
 
 
+def _probes(model: Compiled, component: tuple[str, ...]) -> list[Point]:
+    """Return points spread along the rope."""
+    at = (np.arange(PROBES) * GOLDEN % 1.0).tolist()
+    return [(c, x * float(model.x[-1])) for c in component for x in at[1:]]
+
+
 def _parted(
     asked: UndampedResponses, eigenvalue: Real, circles: contour.Circles, beyond: float
 ) -> tuple[Real, Real]:
@@ -320,32 +334,30 @@ def _parted(
 
 
 def _factored(
-    residue: Real, eigenvalue: Real, asked: UndampedResponses
+    residue: Real, eigenvalue: Real, circles: contour.Circles, asked: UndampedResponses
 ) -> tuple[Index, Real, Real]:
     """Return of each state its mode, its push and how it is seen."""
     inputs, outputs, _ = residue.shape
     twin = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
     size = np.abs(residue).max(axis=2, initial=0.0)
-    floor = UNMOVED * size
     number: list[int] = []
-    push: list[Real] = []
-    seen: list[Real] = []
-    for group in _equal(eigenvalue):
-        left = residue[:, :, group].sum(axis=2)
-        for k in group:
-            found = _rank_one(left, size, floor, twin)
-            if found is None:
-                break
-            number.append(int(k))
-            push.append(found[0])
-            seen.append(found[1])
-            left = left - np.multiply.outer(*found)
+    found: list[_Product] = []
+    for members in circles.members:
+        parts, value = residue[:, :, members], eigenvalue[members]
+        several = _products(parts.sum(axis=2), len(members), size, twin)
+        turned = _turned(several, parts @ (value - value.mean()))
+        if len(turned) == len(members):
+            number += members.tolist()
+            found += turned
+            continue
+        for group in _equal(value):
+            several = _products(parts[:, :, group].sum(axis=2), len(group), size, twin)
+            number += members[group[: len(several)]].tolist()
+            found += several
     own = np.array(number, dtype=np.intp)
-    return (
-        own,
-        np.array(push, dtype=np.float64).reshape(len(own), inputs),
-        np.array(seen, dtype=np.float64).reshape(len(own), outputs).T,
-    )
+    push = np.array([one.push for one in found], dtype=np.float64).reshape(len(own), inputs)
+    seen = np.array([one.seen for one in found], dtype=np.float64).reshape(len(own), outputs)
+    return own, push, seen.T
 
 
 def _equal(eigenvalue: Real) -> list[Index]:
@@ -354,15 +366,68 @@ def _equal(eigenvalue: Real) -> list[Index]:
     return [g for g in np.split(np.arange(len(eigenvalue)), np.flatnonzero(~near) + 1) if len(g)]
 
 
-def _rank_one(R: Real, size: Real, floor: Real, twin: list[int]) -> tuple[Real, Real] | None:
-    """Return push and seen of the largest product in the residues of a mode."""
-    share = np.divide(np.abs(R), size, out=np.zeros_like(R), where=(size > 0) & (np.abs(R) > floor))
+class _Product(NamedTuple):
+    """Residues of a mode."""
+
+    push: Real  # (inputs,)
+    seen: Real  # (outputs,)
+    share: float  # of the largest of points that are pushed and watched, or 0 of no such point
+
+
+def _products(R: Real, most: int, size: Real, twin: list[int]) -> list[_Product]:
+    """Return the products that residues are the sum of, as many as are not rounding."""
+    found: list[_Product] = []
+    for _ in range(most):
+        one = _largest(R, size, twin, alone=len(found) == most - 1)
+        if one is None:
+            break
+        found.append(one)
+        R = R - np.multiply.outer(one.push, one.seen)
+    return found
+
+
+def _largest(R: Real, size: Real, twin: list[int], *, alone: bool) -> _Product | None:
+    """Return the largest product in the residues of modes."""
+    known = (size > 0) & (np.abs(R) > UNMOVED * size)
+    share = np.divide(np.abs(R), size, out=np.zeros_like(R), where=known)
     if not share.any():
         return None
-    own = [share[i, o] if o >= 0 and R[i, o] > 0 else 0.0 for i, o in enumerate(twin)]
     i, o = np.unravel_index(int(share.argmax()), share.shape)
+    own = [share[i, o] if o >= 0 and R[i, o] > 0 else 0.0 for i, o in enumerate(twin)]
     best = int(np.argmax(own)) if own else 0
-    if own and own[best] > 1e-8 * share[i, o]:
+    # of several shapes only these leave what others have as product of push and push
+    if own and not alone and own[best] > 1e-8 * share[i, o]:
         i, o = np.intp(best), np.intp(twin[best])
     scale = np.sqrt(np.abs(R[i, o]))
-    return R[:, o] / (scale * np.sign(R[i, o])), R[i, :] / scale
+    push, seen = R[:, o] / (scale * np.sign(R[i, o])), R[i, :] / scale
+    if alone or twin[i] == o:
+        _alike(push, seen, twin)
+    return _Product(push, seen, own[best] if own else 0.0)
+
+
+def _alike(push: Real, seen: Real, twin: list[int]) -> None:
+    """Make what is pushed and watched move by what it is pushed with, to the last digit."""
+    i = np.flatnonzero(np.array(twin) >= 0)
+    o = np.array(twin)[i]
+    moved = push[i] * seen[o]
+    if moved.max(initial=0.0) > 0:
+        best = int(np.argmax(moved))
+        ratio = np.sqrt(seen[o[best]] / push[i[best]])
+        push *= ratio
+        seen /= ratio
+        push[i] = seen[o] = (push[i] + seen[o]) / 2
+
+
+def _turned(whole: list[_Product], moment: Real) -> list[_Product]:
+    """Return what modes that lie close together do, from their sum and that of square times each.
+
+    So only which of them is which is known the worse the closer they are. Return none where too
+    little is seen of one.
+    """
+    share = [one.share for one in whole]
+    if len(whole) < 2 or min(share) < SEEN * max(share):
+        return []
+    push, seen = (np.array(one).T for one in list(zip(*whole))[:2])
+    own = np.linalg.lstsq(push, np.linalg.lstsq(seen, moment.T)[0].T)[0]
+    _, turn = np.linalg.eigh((own + own.T) / 2)
+    return [_Product(*one, 0.0) for one in zip((push @ turn).T, (seen @ turn).T)]

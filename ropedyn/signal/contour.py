@@ -21,9 +21,11 @@ from ..base.array import Complex, Flags, Index, Real
 Function = Callable[[Complex], Complex]
 """Takes points, shape (n,), and returns values, shape (..., n)."""
 ALONE, TOGETHER = 8, 32
-"""Points of a circle around one pole, and around several."""
-RADIUS = 1 / 50  # Radius of a circle over the distance to the next pole: 50^-8 of that is seen.
-ALIKE = 1e-5  # Poles that differ by this share are in one circle.
+"""Points of a circle around one pole, and around several or one that has little room."""
+RADIUS = 1 / 50  # Radius of a circle over the distance to the next pole: 50^-8 of that is seen,
+NARROW, WIDE = 5e-3, 1 / 4  # or so much where that is less than this part of the pole: 4^-32.
+ALIKE, APART = 1e-3, 8.0
+"""Poles that differ by this share are in one circle, if others are so many times further away."""
 MOST = 1 << 21  # So many numbers are computed at a time.
 
 
@@ -32,11 +34,13 @@ class Circles(NamedTuple):
 
     center: Real  # (n,)
     radius: Real  # (n,)
+    points: Index  # (n,)
     members: list[Index]  # which poles, n arrays
 
     def some(self, which: Index) -> Circles:
         """Return some of them."""
-        return Circles(self.center[which], self.radius[which], [self.members[k] for k in which])
+        members = [self.members[k] for k in which]
+        return Circles(self.center[which], self.radius[which], self.points[which], members)
 
     @property
     def size(self) -> Index:
@@ -46,15 +50,23 @@ class Circles(NamedTuple):
 
 def on_a_line(pole: Real, error: Real, beyond: float) -> Circles:
     """Draw circles around real poles, in order, the next of which is beyond."""
-    limit = ALIKE * np.maximum(np.abs(pole[1:]), np.abs(pole[:-1])) + 4 * (error[1:] + error[:-1])
-    apart = np.flatnonzero(np.diff(pole) > limit) + 1
-    first = np.append(0, apart)[: len(pole)]
-    last = np.append(apart, len(pole))[: len(pole)] - 1
-    room = np.concatenate([[np.inf], pole[first[1:]] - pole[last[:-1]], [beyond - pole[-1:].sum()]])
-    room = np.minimum(room[:-1], room[1:])[: len(first)]
-    every = np.arange(len(pole))
-    members = [every[i : j + 1] for i, j in zip(first.tolist(), last.tolist())]
-    return _circles(pole, members, room)
+    gap = np.concatenate([[np.inf], np.diff(pole), [beyond - pole[-1:].sum()]])[: len(pole) + 1]
+    size = np.maximum(np.abs(pole[1:]), np.abs(pole[:-1]))
+    one = gap[1:-1] <= 4 * (error[1:] + error[:-1])  # not told apart
+    found: list[tuple[int, int]] = []
+    far = np.flatnonzero(~one & (gap[1:-1] > ALIKE * size)) + 1
+    left = list(zip([0, *far.tolist()], [*far.tolist(), len(pole)])) if len(pole) else []
+    while left:
+        i, j = left.pop()
+        inside = np.where(one[i : j - 1], 0.0, gap[i + 1 : j])
+        if inside.any() and APART * (pole[j - 1] - pole[i]) > min(gap[i], gap[j]):
+            k = i + 1 + int(inside.argmax())
+            left += [(i, k), (k, j)]
+        else:
+            found.append((i, j))
+    found.sort()
+    room = np.array([min(gap[i], gap[j]) for i, j in found])
+    return _circles(pole, [np.arange(i, j) for i, j in found], room)
 
 
 def _circles(pole: Real, members: list[Index], room: Real) -> Circles:
@@ -67,9 +79,11 @@ def _circles(pole: Real, members: list[Index], room: Real) -> Circles:
         spread[k] = np.abs(pole[members[k]] - center[k]).max()
     size = np.abs(center)
     room = np.where(size > 0, np.minimum(room, size), np.where(np.isfinite(room), room, 1.0))
-    radius = RADIUS * room
-    radius[several] = np.maximum(radius, np.sqrt(spread * room))[several]
-    return Circles(center, radius, members)
+    narrow = room <= NARROW * size
+    radius = np.where(narrow, WIDE, RADIUS) * room
+    radius[several] = np.maximum(RADIUS * room, np.sqrt(spread * room))[several]
+    narrow[several] = True
+    return Circles(center, radius, np.where(narrow, TOGETHER, ALONE), members)
 
 
 def moments(function: Function, circles: Circles, count: int, points: int) -> Real:
@@ -94,14 +108,16 @@ def residues(function: Function, pole: Real, circles: Circles) -> Real:
     """Return residues whose sum is right, shape (..., poles); poles in no circle have none."""
     count = circles.size
     parts: list[tuple[Index, Real]] = []
-    if (count == 1).any():
-        some = circles.some(np.flatnonzero(count == 1))
-        own = moments(function, some, 1, ALONE)[:, 0]
-        parts.append((np.concatenate(some.members), np.moveaxis(own, 0, -1)))
-    for k in np.flatnonzero(count > 1):
-        one = circles.some(np.array([k]))
-        moment = moments(function, one, int(count[k]), TOGETHER)[0]
-        parts.append((circles.members[k], _split(pole, one, moment)))
+    for points in (ALONE, TOGETHER):
+        some = circles.some(np.flatnonzero((count == 1) & (circles.points == points)))
+        if some.members:
+            own = moments(function, some, 1, points)[:, 0]
+            parts.append((np.concatenate(some.members), np.moveaxis(own, 0, -1)))
+    for several in np.unique(count[count > 1]).tolist():
+        some = circles.some(np.flatnonzero(count == several))
+        for k, moment in enumerate(moments(function, some, several, TOGETHER)):
+            one = some.some(np.array([k]))
+            parts.append((one.members[0], _split(pole, one, moment)))
     assert parts
     result = np.zeros((*parts[0][1].shape[:-1], len(pole)))
     for members, own in parts:

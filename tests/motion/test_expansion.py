@@ -149,6 +149,28 @@ def test_circle_around_close_poles_keeps_what_they_are_together():
     np.testing.assert_allclose(both, function(far), rtol=1e-13)
 
 
+@pytest.mark.parametrize(
+    ("pole", "beyond", "sizes"),
+    [
+        ([1.0, 1.0001, 1.0002, 1.01], 2.0, [3, 1]),
+        ([1.0, 1.0001, 1.0003, 1.0006], 1.001, [1, 1, 1, 1]),  # as at the end of a band
+        ([1.0, 1.0 + 1e-7, 1.0001, 1.0003], 1.0005, [2, 1, 1]),
+    ],
+)
+def test_close_poles_are_in_one_circle_if_others_are_far_from_it(pole, beyond, sizes):
+    circles = contour.on_a_line(np.array(pole), np.zeros(len(pole)), beyond)
+    assert circles.size.tolist() == sizes
+    own = np.arange(1.0, 1.0 + len(pole))
+
+    def function(z):
+        return (own[:, None] / (z - np.array(pole)[:, None])).sum(axis=0)
+
+    r = contour.residues(function, np.array(pole), circles)
+    alone = circles.size[np.repeat(np.arange(len(sizes)), sizes)] == 1
+    np.testing.assert_allclose(r[alone], own[alone], rtol=1e-11)
+    assert abs(r.sum() - own.sum()) < 1e-11 * own.sum()
+
+
 @pytest.mark.parametrize(("apart", "spread"), [(1e-9, 0.0), (4e-3, 2e-3)])
 def test_circles_are_as_wide_as_their_poles_and_their_room_ask_for(apart, spread):
     """1/50 of the way to the next pole, or the mean, of squares, of that way and the spread."""

@@ -29,7 +29,7 @@ from ...chain.port import Point
 from ..acting import acting_laws
 from ..states import Resistance, States, without_dashpots
 
-STIFF = 1e-10  # A left-out flexibility below this part of the point's own is none.
+STIFF = 1e-6  # Of left-out flexibility below this part of the own of its point forces are noise.
 
 
 class Contact(NamedTuple):
