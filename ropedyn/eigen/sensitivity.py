@@ -319,17 +319,17 @@ def sizes(of: _Arrays) -> _Arrays:
     return type(of)(*(np.abs(array) for array in vars(of).values()))
 
 
-def by_tension(chain: Chain, shape: Real) -> Real:
+def by_tension(chain: Chain, shape: Real, times: Real | float = 1.0) -> Real:
     """Return the derivative of the stiffness by the tension, (k, k), of shapes between elements.
 
-    Sums and differences of shapes give the products.
+    Each of the distinct elements counts so many times. Sums and differences of shapes give the products.
     """
 
     def slope(of: Real) -> Real:
         carried = 0 if chain.attached_kind is None else len(chain.attached_kind)
         motion = np.zeros((len(of), carried))
         element, *_ = _core.sensitivity(chain, of, motion, np.zeros(len(of)))
-        return np.asarray(element[:, :, TENSION].sum(axis=1))
+        return np.asarray((times * element[:, :, TENSION]).sum(axis=1))
 
     size = np.sqrt(np.abs(slope(shape)))
     unit = shape / np.where(size > 0, size, 1.0)[:, None, None]

@@ -157,11 +157,11 @@ def _cut(matrix: Real) -> Real:
 class _Basis:
     """Forms of shapes of any size."""
 
-    tension: float  # mean [N]
     eigenvalue: Real  # (k,)
     shape: Real  # (k, nodes, width)
     mass: Real  # (k, k) of inertia
     geometric: Real  # (k, k) of slopes
+    string: Real  # (k, k) of tension
     dragged: Real  # (k, k) of drag and dashpots
     carried: Real  # (k, k) of the stiffness of the structures that nodes carry
     resisted: Real  # (k, k) of their damping
@@ -200,8 +200,11 @@ class _Basis:
             geometric = (total - springs - stiffness) / chain.tension[0]
         # what rounding cannot tell from 0 is 0
         eigenvalue = np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue)
-        tension = model.scene.mean_tension
-        return cls(tension, eigenvalue, shape, mass, geometric, dragged, stiffness, resisted)
+        string = chain.tension[0] * geometric
+        if np.ptp(chain.tension) > 0:  # own weight along a chain
+            string = by_tension(chain, shape, chain.tension)
+        forms = (mass, geometric, string, dragged, stiffness, resisted)
+        return cls(eigenvalue, shape, *forms)
 
 
 def _at_gauss_points(
@@ -287,11 +290,10 @@ def _damping(model: Compiled, basis: _Basis) -> Real:
     """Return shape^T C shape; of what bends, all stiffness but that of tension and structures."""
     share = factors(model.scene.dampings, np.array(1.0)).imag
     root = np.sqrt(np.diag(basis.mass))
-    string = basis.tension * basis.geometric
-    elastic = np.diag(basis.eigenvalue * root**2) - string - basis.carried
+    elastic = np.diag(basis.eigenvalue * root**2) - basis.string - basis.carried
     return np.asarray(
         share[SECTION] * elastic
-        + share[TENSION] * string
+        + share[TENSION] * basis.string
         + share[INERTIA] * basis.mass
         + basis.dragged
         + basis.resisted

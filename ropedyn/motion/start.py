@@ -55,7 +55,7 @@ def kicked(model: Compiled, velocity: Any) -> Begun:
         return Begun({})
     shapes = _shapes(model, velocity, "velocity")
     if not shapes:
-        return Begun(checked_loads(model, velocity, "velocity"))
+        return Begun(checked_loads(model, velocity, "velocity", over=" s"))
     return _at_places(model, lambda parts: _impulses(model, shapes, parts))
 
 

@@ -470,9 +470,11 @@ SOLVERS = {
 }
 
 
-def checked_loads(model: Compiled, load: Any, name: str = "load") -> dict[Point, float]:
+def checked_loads(
+    model: Compiled, load: Any, name: str = "load", *, over: str = ""
+) -> dict[Point, float]:
     """Return forces at points of a model, none of them where a rope hangs without bending."""
-    loads = summed_loads(load, model.coordinates, model.scene.rope.length, name)
+    loads = summed_loads(load, model.coordinates, model.scene.rope.length, name, over=over)
     for point in loads:
         refuse_slack(model, point, name)
     return loads
@@ -486,14 +488,14 @@ def check_some(load: Any, name: str = "load") -> None:
 
 
 def summed_loads(
-    load: Any, coordinates: tuple[str, ...], length: float, name: str = "load"
+    load: Any, coordinates: tuple[str, ...], length: float, name: str = "load", *, over: str = ""
 ) -> dict[Point, float]:
-    """Return forces at points of a rope, those given twice as their sum."""
+    """Return forces at points of a rope, or these over a time [s], those given twice as a sum."""
     check_some(load, name)
     loads: dict[Point, float] = {}
     for key, value in load.items():
         point = check.point(key, f"{name} point", coordinates, length)
-        unit = FORCE_UNIT[point[0]]
+        unit = FORCE_UNIT[point[0]] + over
         loads[point] = loads.get(point, 0.0) + check.number(value, f"{name}[{key}]", unit)
     return loads
 

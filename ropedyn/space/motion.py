@@ -169,20 +169,20 @@ def _released(model: SpaceModel, start: Any) -> Begun:
 
 def _kicked(model: SpaceModel, velocity: Any) -> Begun:
     """Return the impulses that begin motion [N s, N m s]."""
-    return Begun({} if velocity is None else _loads(model, velocity, "velocity"))
+    return Begun({} if velocity is None else _loads(model, velocity, "velocity", " s"))
 
 
 IN_SPACE = Kind(_chosen, _points, _holds, _observed, _released, _kicked, SpaceTransfer)
 
 
-def _loads(model: SpaceModel, given: Any, name: str) -> dict[Point, float]:
+def _loads(model: SpaceModel, given: Any, name: str, over: str = "") -> dict[Point, float]:
     shapes = given.values() if isinstance(given, dict) else [given]
     if any(map(callable, shapes)):
         raise SceneError(
             f"{name} must be loads at points for {in_space(model.scene)}: a shape along it would "
             "have to keep what its curvature ties together"
         )
-    return summed_loads(given, model.coordinates, model.scene.rope.length, name)
+    return summed_loads(given, model.coordinates, model.scene.rope.length, name, over=over)
 
 
 def _mesh(run: Run, value: Real) -> Real:

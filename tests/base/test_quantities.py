@@ -322,6 +322,12 @@ PAIRS = {
         ),
         lambda: CHAIN.transient(TIME, drive=("z", 0.3048), force=1e3 * np.cos(TIME)).value,
     ),
+    "velocity": (
+        lambda: (
+            CHAIN.transient(TIME, velocity={("z", 0.3): Q(2e-3, "kN s")}, response=("z", 0.4)).value
+        ),
+        lambda: CHAIN.transient(TIME, velocity={("z", 0.3): 2.0}, response=("z", 0.4)).value,
+    ),
     "stepped sine": (
         lambda: DAMPED.stepped_sine(Q([20.0], "Hz"), drive=("z", 0.3), amplitude=Q(1, "kN")).value,
         lambda: DAMPED.stepped_sine([20.0], drive=("z", 0.3), amplitude=1e3).value,

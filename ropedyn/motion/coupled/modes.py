@@ -114,7 +114,7 @@ class AllModes:
         if right == 0:
             stiff, slope = F.T @ stiff - np.hstack([Q, 0 * Q]), -by_tension(bare, unit)[:width]
         K, by_t = stiff[at], slope[at]
-        string = self.model.scene.mean_tension * by_t
+        string = element.tension[element.element_of[0]] * by_t
         share = factors(self.model.scene.dampings, np.array(1.0)).imag
         lossy = share[SECTION] * (K - string) + share[TENSION] * string
         return np.stack([K, lossy, by_t]) @ shape[:, left : left + 2].reshape(len(shape), -1).T
