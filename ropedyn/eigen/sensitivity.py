@@ -322,7 +322,7 @@ def sizes(of: _Arrays) -> _Arrays:
 def by_tension(chain: Chain, shape: Real, times: Real | float = 1.0) -> Real:
     """Return the derivative of the stiffness by the tension, (k, k), of shapes between elements.
 
-    Each of the distinct elements counts so many times. Sums and differences of shapes give the products.
+    Each distinct element counts so many times. Sums and differences of shapes give the products.
     """
 
     def slope(of: Real) -> Real:
