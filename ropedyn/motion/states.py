@@ -66,6 +66,7 @@ class States:
     beyond: float  # Angular frequency of the lowest mode that is left out [rad/s], or infinite
     drag: float  # of the modes that are left out, as proportional damping [1/s]
     ratio: float  # of their damping, as a ratio
+    wrong: Real  # (k,) rounding of push and seen, relative
     # (outputs, inputs) sum of what left-out modes have as flexibility, in magnitude, at most;
     # infinite of internal forces, tips and moved ends
     left: Real
@@ -260,6 +261,7 @@ def states(
         beyond=beyond,
         drag=drag,
         ratio=float(ratio.max(initial=0.0)),
+        wrong=circles.rounding[own],
         left=left,
     )
 
@@ -339,7 +341,7 @@ def _factored(
     """Return of each state its mode, its push and how it is seen."""
     inputs, outputs, _ = residue.shape
     twin = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
-    size = np.abs(residue).max(axis=2, initial=0.0)
+    size = _size(residue, np.array(twin, dtype=np.intp))
     number: list[int] = []
     found: list[_Product] = []
     for members in circles.members:
@@ -358,6 +360,20 @@ def _factored(
     push = np.array([one.push for one in found], dtype=np.float64).reshape(len(own), inputs)
     seen = np.array([one.seen for one in found], dtype=np.float64).reshape(len(own), outputs)
     return own, push, seen.T
+
+
+def _size(residue: Real, twin: Index) -> Real:
+    """Return the size of residues, as products of what pushes and what is seen."""
+    most = np.abs(residue).max(axis=2, initial=0.0)
+    i = np.flatnonzero(twin >= 0)
+    own = np.sqrt(most[i, twin[i]])
+    i, own = i[own > 0], own[own > 0]
+    if not len(i):
+        return np.asarray(most)
+    # pairs of points that no mode moves both of are rounding
+    seen = (most[i] / own[:, None]).max(axis=0)
+    push = (most[:, twin[i]] / own).max(axis=1)
+    return np.multiply.outer(push, seen)
 
 
 def _equal(eigenvalue: Real) -> list[Index]:

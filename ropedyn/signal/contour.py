@@ -23,9 +23,10 @@ Function = Callable[[Complex], Complex]
 ALONE, TOGETHER = 8, 32
 """Points of a circle around one pole, and around several or one that has little room."""
 RADIUS = 1 / 50  # Radius of a circle over the distance to the next pole: 50^-8 of that is seen,
-NARROW, WIDE = 5e-3, 1 / 4  # or so much where that is less than this part of the pole: 4^-32.
+NARROW, WIDE = 0.05, 1 / 4  # or so much where that is less than this part of the pole: 4^-32.
 ALIKE, APART = 1e-3, 8.0
 """Poles that differ by this share are in one circle, if others are so many times further away."""
+ROUNDED = 64 * np.finfo(float).eps  # A function near a pole is known to this of the pole.
 MOST = 1 << 21  # So many numbers are computed at a time.
 
 
@@ -36,6 +37,13 @@ class Circles(NamedTuple):
     radius: Real  # (n,)
     points: Index  # (n,)
     members: list[Index]  # which poles, n arrays
+
+    @property
+    def rounding(self) -> Real:
+        """What rounding does to residues of poles with little room, relative, shape (poles,)."""
+        narrow = self.points == TOGETHER
+        share = np.divide(np.abs(self.center), self.radius, out=0 * self.radius, where=narrow)
+        return np.repeat(ROUNDED * share, self.size)
 
     def some(self, which: Index) -> Circles:
         """Return some of them."""

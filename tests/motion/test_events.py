@@ -114,6 +114,26 @@ def test_close_modes_of_spans_between_masses_are_right_to_rounding(heavy):
         assert (apart <= by_events.error + linear.error + 1e-11 * most).all()
 
 
+@pytest.mark.parametrize("damping", [rd.ViscousDamping(0.2), rd.RayleighDamping(2.0, 1e-6)])
+def test_pairs_of_points_that_no_mode_moves_both_of_tell_nothing(damping):
+    """Of what is even nothing is odd but rounding, which told what modes are."""
+    beam = rd.Rope(1.0, 0.2, bending_stiffness=3.0, rotary_inertia=1e-3)
+    far = rd.Stop(0.5, 1e4, gap=1.0)
+    time = np.linspace(0.0, 0.1, 101)
+    nodes = [("z", k / 6) for k in range(1, 6)] + [("beta", 0.5)]
+    asked = {"drive": ("z", 1 / 3), "force": rd.Sine(2.0, 40.0), "response": nodes}
+    events, linear = (
+        rd.Scene(beam, tension=1000.0, damping=damping, parts=parts)
+        .compile(elements=6, element="rigid")
+        .transient(time, tolerance=1e-8, **asked)
+        for parts in ([far], [])
+    )
+    assert events.cost.method == "events"
+    apart = np.abs(events.value - linear.value)
+    most = np.abs(linear.value).max(axis=1, keepdims=True)
+    assert (apart <= events.error + linear.error + 1e-11 * most).all()
+
+
 def test_friction_keeps_what_rests():
     model = mass_on_a_string(rd.Dashpot(LENGTH / 2, 1.0, exponent=0.0))
     history = model.transient(np.linspace(0, 1, 11), drive=MIDDLE, force=rd.Sine(0.999, 20.0))

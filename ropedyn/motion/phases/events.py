@@ -35,6 +35,7 @@ class Followed(NamedTuple):
 
     seen: list[Real]  # (points, t) of each look
     size: list[Real]  # (points,) of the modes that these are the sum of
+    rounded: list[Real]  # (points,) what rounding of their shapes does to these
     events: list[float]  # [s]
     whole: bool  # whether no mode is left out
     modes: int
@@ -44,7 +45,7 @@ class Followed(NamedTuple):
 def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> Followed:
     """Return what is seen, (points, t) of each look, of a motion whose push is nudged."""
     seen = [np.zeros((len(one.points), len(one.time))) for one in looks]
-    sizes = [np.zeros(len(one.points)) for one in looks]
+    sizes, rounded = ([np.zeros(len(one.points)) for one in looks] for _ in range(2))
     events: list[float] = []
     whole, until = True, math.inf
     components = moving_components(run, looks, modes)
@@ -54,9 +55,13 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
         try:
             for visit in walk.visits(rest(one, nudge), pieces(forces, run.time, 1 + nudge)):
                 is_last = visit.stop >= run.time[-1]
-                for look, value, size, (rows, which) in zip(looks, seen, sizes, one.watched):
-                    moved = visit.size(one.system.states.seen[rows], look.order)
-                    size[which] = np.maximum(size[which], moved)
+                st = one.system.states
+                for k, (look, value, (rows, which)) in enumerate(zip(looks, seen, one.watched)):
+                    for each, of in (
+                        (sizes[k], st.seen[rows]),
+                        (rounded[k], st.wrong * st.seen[rows]),
+                    ):
+                        each[which] = np.maximum(each[which], visit.size(of, look.order))
                     _record(visit, look, value, rows=rows, which=which, last=is_last)
                 reached = visit.stop
                 run.progress(min(1.0, (visit.stop - run.time[0]) / one.system.span))
@@ -66,7 +71,7 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
             break
         events += [at for at, _ in walk.events]
         whole = whole and one.is_whole
-    return Followed(seen, sizes, sorted(events), whole, modes, until)
+    return Followed(seen, sizes, rounded, sorted(events), whole, modes, until)
 
 
 def _record(
@@ -165,7 +170,7 @@ def _running(difference: Real) -> Real:
 
 def _rounding(found: Followed) -> Real:
     """Return what rounding leaves of modes that cancel, as where a point is held."""
-    return ROUNDED * found.size[0][:, None]
+    return (ROUNDED * found.size[0] + found.rounded[0])[:, None]
 
 
 def _allowed(found: Followed, tolerance: float) -> Real:

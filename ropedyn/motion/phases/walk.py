@@ -213,7 +213,11 @@ class PhaseWalk:
         size = np.abs(phase.seen) * driven.first
         value = size.sum(axis=1) + np.abs(m.Ds) @ np.abs(driven.fixed)
         value += np.abs(m.Dd) @ np.abs(driven.push.level)
-        speed = size @ np.abs(phase.poles.rate)
+        # what acts may cancel friction
+        with np.errstate(over="ignore"):
+            acts = np.abs(phase.driven) @ np.abs(driven.push.level)
+            acts += np.abs(phase.held) @ np.abs(driven.fixed)
+            speed = size @ np.abs(phase.poles.rate) + np.abs(phase.seen) @ acts
         contacts, count = len(laws.contacts), len(laws.points)
         found = (value[first : first + contacts] + [c.gap for c in laws.contacts]).tolist()
         for k, friction in enumerate(laws.frictions, contacts):
