@@ -32,6 +32,7 @@ LEAST = 256  # and not before so many periods;
 UNDAMPED = 4096  # after so many where nothing but friction damps.
 DISTURBED = 1e-6  # Of the motion, how it is disturbed once: it must come back.
 ALIKE = 1e-4  # Periods that differ by less than this part of what is asked differ by rounding.
+FURTHER = 8.0  # What is told for longer than was seen counts so many times.
 AS_BEFORE = 0.9  # Changes that are not below so much of those before do not decay.
 TOLERANCE = 1e-3  # Of the steady state where none is given.
 SAMPLES = 1024  # Of a period, in exact phases: what slips has harmonics that fall as 1/k^3.
@@ -259,9 +260,9 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
     """Follow the motion until it stays."""
     periods, share = math.ceil(WINDOW / turn) * turn, (asked.tolerance or TOLERANCE) / 2
     decays = Decays(max(_longest(rows, frequency) // periods, 4))
-    seen: list[Complex] = []
-    motion: list[Complex] = []
-    unlike: list[Complex] = []  # by how much periods differ from their mean
+    # changes of what is seen, of all motion and of how periods differ from their mean
+    changes: list[list[float]] = [[], [], []]
+    before: tuple[Complex, ...] = ()
     for k in range(max(LONGEST // periods, LOOKS + 1)):
         found = np.zeros(len(asked.responses), dtype=np.complex128)
         rounded, folded = np.zeros((2, len(found)))
@@ -269,35 +270,38 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
         for one, now in zip(rows, each):
             found[one.mine], rounded[one.mine] = now.watched, ROUNDING * now.parts
             folded[one.mine] = now.folded
-        seen.append(found)
         modes = np.concatenate([now.modes for now in each])
-        turns = modes.reshape(len(modes), -1, turn).mean(axis=2)
-        motion.append(modes.mean(axis=1))
-        unlike = [*unlike[-LOOKS:], (turns - motion[-1][:, None]).ravel()]
+        motion = modes.mean(axis=1)
+        unlike = modes.reshape(len(modes), -1, turn).mean(axis=2) - motion[:, None]
+        for past, was, now in zip(changes, before, (found, motion, unlike)):
+            past.append(float(np.abs(now - was).max(initial=0.0)))
+        before = found, motion, unlike
         if k == 0:  # what symmetry keeps at rest may grow too
-            speed = DISTURBED * 2 * math.pi * frequency * np.abs(motion[0]).max(initial=0.0)
+            speed = DISTURBED * 2 * math.pi * frequency * np.abs(motion).max(initial=0.0)
             for one in rows:
                 one.disturb(speed * np.random.default_rng(0).normal(size=len(one.sigma)))
-        if not decays.go_on(motion):
+        watched, moves, differs = changes
+        if not decays.go_on(moves):
             break
-        if len(seen) <= LOOKS:
+        if len(moves) < LOOKS:
             continue
-        changes, moves = _changes(seen), _changes(motion)
-        ahead, most = _left(moves), share * np.abs(motion[-1]).max()
+        most = share * np.abs(motion).max()
+        ahead, apart = _left(moves, ALIKE * most), np.abs(unlike).max(initial=0.0)
         # a mean may stay while every second period departs from the others
-        apart = np.abs(unlike[-1]).max(initial=0.0)
-        if ahead > most or (apart > ALIKE * most and _left(_changes(unlike)) > most):
+        if ahead > most or _left(differs, ALIKE * most) > most:
             continue
         # amplitudes may hang back for a while, as where friction just begins to slip
-        goes = ahead / moves.max() if ahead > 0 else 0.0
-        left = max(_left(changes), goes * float(changes.max()))
-        if left <= max(share * np.abs(found).max(), rounded.max()):
+        goes = ahead / max(moves[-LOOKS:]) if ahead > 0 else 0.0
+        allowed = max(share * np.abs(found).max(), rounded.max())
+        left = _left(watched, max(ALIKE * share * np.abs(found).max(), rounded.max()))
+        left = max(left, goes * max(watched[-LOOKS:]))
+        if left <= allowed:
             error = np.where(found == 0, 0.0, np.maximum(left, rounded) + folded)
             return Settled(found, error, bool(apart <= most))
-    change = np.abs(motion[-1] - motion[-2]).max() / np.abs(motion[-1]).max()
+    change = changes[1][-1] / np.abs(motion).max()
     raise SolveError(
         f"frequency {frequency!r} Hz has no steady state of its period: after "
-        f"{len(motion) * periods} periods the motion changes by {float(change):.1e} of itself in "
+        f"{(k + 1) * periods} periods the motion changes by {change:.1e} of itself in "
         f"{periods} periods"
     )
 
@@ -316,28 +320,32 @@ class Decays:
     def __init__(self, first: int) -> None:
         self.next, self.as_before = first, False
 
-    def go_on(self, motion: Sequence[Complex]) -> bool:
+    def go_on(self, changes: Sequence[float]) -> bool:
         """Whether the last two times that it was asked the changes had not stayed as before."""
-        if len(motion) < self.next:
+        if len(changes) < self.next - 1:
             return True
-        change, half = np.abs(np.diff(motion, axis=0)).max(axis=1), self.next // 2
-        late, early = float(change[half:].max()), float(change[half // 2 : half].max())
+        half = self.next // 2
+        late, early = max(changes[half:]), max(changes[half // 2 : half])
         before, self.as_before = self.as_before, late > AS_BEFORE * early
         self.next *= 2
         return not (before and self.as_before)
 
 
-def _changes(seen: list[Complex]) -> Real:
-    """Return the last changes from look to look, of what changes most."""
-    return np.asarray(np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1, initial=0.0))
-
-
-def _left(changes: Real) -> float:
-    """Return what geometric changes add up to from now on, infinite where they grow."""
-    half = len(changes) // 2
-    early, late = float(changes[:half].max()), float(changes[half:].max())
-    if late == 0:
-        return 0.0
-    ratio = math.sqrt(late / early) if early > 0 else math.inf
-    # the first may have been far larger for another reason, as where friction held until then
-    return late * max(1.0, ratio / (1 - ratio)) if ratio < 1 else math.inf
+def _left(changes: Sequence[float], least: float) -> float:
+    """Return what changes add up to from now on, infinite where they grow; few are rounding."""
+    last, half, looks = changes[-LOOKS:], LOOKS // 2, len(changes)
+    late, middle = max(last[half:]), looks // 2
+    if late <= least:
+        return late
+    # each with one so many looks before: the first may have been far larger for another reason, as
+    # where friction held until then, and what swings falls sooner and later
+    pairs = [
+        (late, max(last[:half]), half),
+        (last[-1], last[half - 1], half),
+        (late, max(changes[middle : middle + half]), max(looks - half - middle, half)),
+    ]
+    ratio = max((b / a) ** (1 / n) if a > 0 else math.inf for b, a, n in pairs)
+    if ratio >= 1:
+        return math.inf
+    ahead = ratio / (1 - ratio)
+    return late * max(1.0, ahead * (1.0 if ahead <= looks else FURTHER))
