@@ -21,6 +21,7 @@ from ..eigen.damped.proportional import proportional
 from ..eigen.damped.rates import Rates
 from ..eigen.vectors import within
 from ..response.deflection import POINTS
+from ..response.modal_sum import beside_ratios
 from ..scene import damping
 from .coupled.energy import of_chain
 from .history import Balance, History
@@ -210,9 +211,9 @@ def _has_ratios(run: Run) -> bool:
 
 
 def resists_beside_ratios(run: Run) -> bool:
-    """Whether dashpots of points couple modes that have damping ratios of their own."""
+    """Whether modes that have damping ratios of their own are damped otherwise too."""
     is_open = run.method == "auto" and run.modes is None
-    return is_open and _has_ratios(run) and "dashpot" in run.model.scene.effects
+    return is_open and _has_ratios(run) and bool(beside_ratios(run.model))
 
 
 def is_proportional(run: Run) -> bool:

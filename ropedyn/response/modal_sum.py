@@ -56,15 +56,10 @@ def refuse_other_damping(
     model: Compiled, drives: Iterable[Point], responses: Iterable[Point]
 ) -> None:
     """Refuse modal damping beside any other, which would couple the modes, of ends and tips."""
-    scene, chain = model.scene, model.chain
-    others = [one.kind for one in damping.having(scene.dampings, "rate", "loss", "drag")]
-    if "dashpot" in scene.effects:
-        others.append("dashpot")
-    others += chain.carried if chain.resists else []
-    if others:
+    if others := beside_ratios(model):
         raise SceneError(
-            "damping must be modal alone in a frequency response, where other damping couples the "
-            f"modes, got {', '.join(others)}"
+            "damping must be modal alone in a frequency response and where other damping couples "
+            f"the modes, got {', '.join(others)}"
         )
     refuse_moved_ends(drives)
     if any(map(is_tip, responses)):
@@ -72,6 +67,15 @@ def refuse_other_damping(
             "damping must not be modal where the tip of a wire is asked for, whose modes are those "
             "of rope and wire together"
         )
+
+
+def beside_ratios(model: Compiled) -> list[str]:
+    """Name what damps beside ratios of modes."""
+    scene, chain = model.scene, model.chain
+    others = [one.kind for one in damping.having(scene.dampings, "rate", "loss", "drag")]
+    if "dashpot" in scene.effects:
+        others.append("dashpot")
+    return [*others, *(chain.carried if chain.resists else [])]
 
 
 class Summed(NamedTuple):
