@@ -134,6 +134,21 @@ def test_pairs_of_points_that_no_mode_moves_both_of_tell_nothing(damping):
     assert (apart <= events.error + linear.error + 1e-11 * most).all()
 
 
+@pytest.mark.parametrize("quantity", ["velocity", "acceleration"])
+def test_what_friction_keeps_where_it_was_let_go_is_at_rest(quantity):
+    """Its acceleration was refused after a minute: nothing moved that it could be small beside."""
+    friction = rd.Dashpot(0.5, 50.0, exponent=0.0)
+    scene = rd.Scene(rd.Rope(1.0, 0.2), tension=1000.0, damping=DRAG, parts=[friction])
+    history = scene.compile(elements=8, element="rigid").transient(
+        np.linspace(0.0, 0.1, 101),
+        start={("z", 0.5): 10.0},
+        response=("z", 0.25),
+        quantity=quantity,
+    )
+    assert history.cost.method == "events"
+    assert np.abs(history.value).max() <= history.error.max() < 1e-9  # of 1e4 m/s^2 and 25 m/s
+
+
 def test_friction_keeps_what_rests():
     model = mass_on_a_string(rd.Dashpot(LENGTH / 2, 1.0, exponent=0.0))
     history = model.transient(np.linspace(0, 1, 11), drive=MIDDLE, force=rd.Sine(0.999, 20.0))

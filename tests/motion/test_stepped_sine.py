@@ -335,3 +335,24 @@ def test_friction_that_just_slips_is_known_as_far_as_is_said(force, frequency, r
     known = found.rounding_error * np.abs(found.value) + exact.rounding_error * np.abs(exact.value)
     assert (apart <= known).all()
     assert (apart <= 1e-3 * np.abs(exact.value)).all()
+
+
+def test_friction_that_slides_all_the_time_beside_a_stop_has_a_steady_state():
+    """While all friction holds nothing is found from rest, and it was refused."""
+    parts = [
+        rd.Dashpot(0.25, 0.1018, exponent=0.0),
+        rd.Dashpot(0.5, 0.0259, exponent=0.0),
+        rd.Stop(0.75, 347.2, gap=0.0009),
+    ]
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ViscousDamping(1.2), parts=parts)
+    model, drive = scene.compile(elements=4, element="rigid"), ("z", 0.5)
+    found = model.stepped_sine([13.89], drive=drive, amplitude=1.0)
+    assert found.cost.method == "events" and found.stable.all()
+    samples, periods = 64, 150
+    time = np.arange(samples * periods + 1) / (samples * 13.89)
+    push = rd.Sine(1.0, 13.89, phase=math.pi / 2)
+    moved = model.transient(time, drive=drive, force=push, response=drive, tolerance=1e-6).value[0]
+    last = moved[-1 - 8 * samples : -1] @ np.exp(-2j * np.pi * np.arange(8 * samples) / samples)
+    apart = abs(found.value[0, 0] - last / (4 * samples))
+    known = found.rounding_error[0, 0] * abs(found.value[0, 0])
+    assert apart <= known + 1e-4 * abs(found.value[0, 0])

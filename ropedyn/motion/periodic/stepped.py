@@ -39,8 +39,14 @@ def solve_stepped(asked: SteppedSine) -> FRF:
     driven = Driven.of(asked)
     if driven.is_linear:
         return _linear(asked, driven)
-    states = _followed(driven) if driven.points else []
-    if slips(driven, states):
+    try:
+        states = _followed(driven) if driven.points else []
+        does_slip = slips(driven, states)
+    except SolveError:
+        does_slip = bool(driven.held)  # nothing is found while all friction holds
+        if not does_slip:
+            raise
+    if does_slip:
         return slipping(asked, driven.turn)
     value, error = watched(driven, asked.frequency, states)
     unknowns = max((len(state.place.x) for state in states), default=0)

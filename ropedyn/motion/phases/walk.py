@@ -79,7 +79,8 @@ class Visit(NamedTuple):
         """Return what the modes that outputs are the sum of move them at the start, at most."""
         m, poles = self.phase.matrices, self.phase.poles
         q = np.abs(m.E @ poles.right[: m.E.shape[1]])
-        each = q @ (np.abs(self.driven.own) * np.abs(poles.rate) ** order)
+        moves = np.maximum(np.abs(self.driven.own), self.driven.first)
+        each = q @ (moves * np.abs(poles.rate) ** order)
         return np.asarray(np.abs(seen) @ (each + np.abs(m.b @ self.hold)))
 
     def state(self) -> Course:
