@@ -203,8 +203,7 @@ class _Basis:
         string = chain.tension[0] * geometric
         if np.ptp(chain.tension) > 0:  # own weight along a chain
             string = by_tension(chain, shape, chain.tension)
-        forms = (mass, geometric, string, dragged, stiffness, resisted)
-        return cls(eigenvalue, shape, *forms)
+        return cls(eigenvalue, shape, mass, geometric, string, dragged, stiffness, resisted)
 
 
 def _at_gauss_points(

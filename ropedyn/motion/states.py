@@ -25,6 +25,7 @@ from ..chain.compiled import Compiled, with_plain_lumps
 from ..chain.port import Point, is_force, locate
 from ..eigen.damped.proportional import Proportional, proportional
 from ..eigen.damped.rates import Rates
+from ..eigen.damped.residue import spread
 from ..eigen.spectrum import spectrum
 from ..response.modal_sum import known_ratios
 from ..response.moved_end import is_end
@@ -39,8 +40,8 @@ EQUAL = 1e-9  # Eigenvalues that differ by this share are one, of as many shapes
 ROUND = 1e-11  # What modes leave of this share is rounding.
 FEW = 16  # Nodes whose damping is not as their mass are points of their own, at most.
 UNMOVED = 1e-20  # Below this share of the largest residue of a point it does not move.
-PROBES, GOLDEN = 9, 0.6180339887498949  # Multiples without whole turns are spread evenly.
-SEEN = 1e-4  # Modes that lie close together are told apart by points that see so much of each.
+PROBES = 8  # Modes that lie close together are told apart at so many places
+SEEN = 1e-4  # that see so much of each.
 
 
 class Resistance(NamedTuple):
@@ -222,18 +223,11 @@ def states(
             beyond = float(np.sqrt(eigenvalue[len(ratio)]))
             eigenvalue, error = eigenvalue[: len(ratio)], error[: len(ratio)]
     circles = contour.on_a_line(eigenvalue, error, beyond**2)
-    # each point once, what is pushed and watched there is one; others tell close modes apart
-    probes = _probes(model, component) if (circles.size > 1).any() else []
-    drives, responses = ([*dict.fromkeys([*one, *probes])] for one in (inputs, outputs))
-    asked = UndampedResponses(model, component, drives, responses)
-    residue, rest = _parted(asked, eigenvalue, circles, beyond)
-    left = np.zeros((len(outputs), len(inputs)))
+    asked = UndampedResponses(model, component, list(inputs), list(outputs))
+    own, push, seen, rest = _parted_points(asked, eigenvalue, circles, beyond)
+    left = np.zeros(rest.shape)
     if np.isfinite(beyond):
-        plain = UndampedResponses(model, component, list(inputs), list(outputs))
-        left = plain.bounded(lambda own: _parted(own, eigenvalue, circles, beyond)[1]).T
-    own, push, seen = _factored(residue, eigenvalue, circles, asked)
-    i, o = [drives.index(p) for p in inputs], [responses.index(p) for p in outputs]
-    push, seen, rest = push[:, i], seen[o], rest[np.ix_(o, i)]
+        left = asked.bounded(lambda own: _parted(own, eigenvalue, circles, beyond)[1]).T
     omega = np.sqrt(np.maximum(eigenvalue, 0.0))
     gamma, drag = closed.soften.real, closed.drag.real
     sigma = ratio * omega + (drag + gamma * eigenvalue) / 2
@@ -309,10 +303,25 @@ def _eigenvalues(
     return value, beyond, error
 
 
+def _parted_points(
+    asked: UndampedResponses, eigenvalue: Real, circles: contour.Circles, beyond: float
+) -> tuple[Index, Real, Real, Real]:
+    """Return of each state its mode, its push and how it is seen, and the rest."""
+    # each point once, what is pushed and watched there is one; others tell close modes apart
+    probes = _probes(asked.model, asked.component) if (circles.size > 1).any() else []
+    both = asked.drives, asked.responses
+    drives, responses = ([*dict.fromkeys([*one, *probes])] for one in both)
+    every = dataclasses.replace(asked, drives=drives, responses=responses)
+    residue, rest = _parted(every, eigenvalue, circles, beyond)
+    own, push, seen = _factored(residue, eigenvalue, circles, every)
+    i, o = ([one.index(p) for p in given] for one, given in zip((drives, responses), both))
+    return own, push[:, i], seen[o], rest[np.ix_(o, i)]
+
+
 def _probes(model: Compiled, component: tuple[str, ...]) -> list[Point]:
     """Return points spread along the rope."""
-    at = (np.arange(PROBES) * GOLDEN % 1.0).tolist()
-    return [(c, x * float(model.x[-1])) for c in component for x in at[1:]]
+    at = spread(PROBES).tolist()
+    return [(c, x * float(model.x[-1])) for c in component for x in at]
 
 
 def _parted(
@@ -340,8 +349,9 @@ def _factored(
 ) -> tuple[Index, Real, Real]:
     """Return of each state its mode, its push and how it is seen."""
     inputs, outputs, _ = residue.shape
-    twin = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
-    size = _size(residue, np.array(twin, dtype=np.intp))
+    same = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
+    twin = np.array(same, dtype=np.intp)
+    size = _size(residue, twin)
     number: list[int] = []
     found: list[_Product] = []
     for members in circles.members:
@@ -390,7 +400,7 @@ class _Product(NamedTuple):
     share: float  # of the largest of points that are pushed and watched, or 0 of no such point
 
 
-def _products(R: Real, most: int, size: Real, twin: list[int]) -> list[_Product]:
+def _products(R: Real, most: int, size: Real, twin: Index) -> list[_Product]:
     """Return the products that residues are the sum of, as many as are not rounding."""
     found: list[_Product] = []
     for _ in range(most):
@@ -402,7 +412,7 @@ def _products(R: Real, most: int, size: Real, twin: list[int]) -> list[_Product]
     return found
 
 
-def _largest(R: Real, size: Real, twin: list[int], *, alone: bool) -> _Product | None:
+def _largest(R: Real, size: Real, twin: Index, *, alone: bool) -> _Product | None:
     """Return the largest product in the residues of modes."""
     known = (size > 0) & (np.abs(R) > UNMOVED * size)
     share = np.divide(np.abs(R), size, out=np.zeros_like(R), where=known)
@@ -413,7 +423,7 @@ def _largest(R: Real, size: Real, twin: list[int], *, alone: bool) -> _Product |
     best = int(np.argmax(own)) if own else 0
     # of several shapes only these leave what others have as product of push and push
     if own and not alone and own[best] > 1e-8 * share[i, o]:
-        i, o = np.intp(best), np.intp(twin[best])
+        i, o = np.intp(best), twin[best]
     scale = np.sqrt(np.abs(R[i, o]))
     push, seen = R[:, o] / (scale * np.sign(R[i, o])), R[i, :] / scale
     if alone or twin[i] == o:
@@ -421,10 +431,10 @@ def _largest(R: Real, size: Real, twin: list[int], *, alone: bool) -> _Product |
     return _Product(push, seen, own[best] if own else 0.0)
 
 
-def _alike(push: Real, seen: Real, twin: list[int]) -> None:
+def _alike(push: Real, seen: Real, twin: Index) -> None:
     """Make what is pushed and watched move by what it is pushed with, to the last digit."""
-    i = np.flatnonzero(np.array(twin) >= 0)
-    o = np.array(twin)[i]
+    i = np.flatnonzero(twin >= 0)
+    o = twin[i]
     moved = push[i] * seen[o]
     if moved.max(initial=0.0) > 0:
         best = int(np.argmax(moved))

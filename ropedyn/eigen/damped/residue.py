@@ -79,8 +79,13 @@ def _room(value: Complex, group: Index, damped: Damped) -> float:
 def _probes(chain: Chain) -> Integer:
     """Return the ends of a chain, some nodes spread along it and those that carry structures."""
     last = chain.nodes - 1
-    spread = np.rint(np.arange(1, PLACES + 1) * GOLDEN % 1.0 * last).astype(np.int64)
-    return np.unique(np.concatenate([[0, last], spread, chain.feet[chain.feet >= 0]]))
+    inside = np.rint(spread(PLACES) * last).astype(np.int64)
+    return np.unique(np.concatenate([[0, last], inside, chain.feet[chain.feet >= 0]]))
+
+
+def spread(count: int) -> Real:
+    """Return so many places that are spread evenly, over the length."""
+    return np.asarray(np.arange(1, count + 1) * GOLDEN % 1.0)
 
 
 def _ports(chain: Chain, nodes: Integer) -> Ports:

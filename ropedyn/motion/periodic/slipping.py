@@ -292,10 +292,9 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
             continue
         # amplitudes may hang back for a while, as where friction just begins to slip
         goes = ahead / max(moves[-LOOKS:]) if ahead > 0 else 0.0
-        allowed = max(share * np.abs(found).max(), rounded.max())
-        left = _left(watched, max(ALIKE * share * np.abs(found).max(), rounded.max()))
-        left = max(left, goes * max(watched[-LOOKS:]))
-        if left <= allowed:
+        asks, least = share * np.abs(found).max(), rounded.max()
+        left = max(_left(watched, max(ALIKE * asks, least)), goes * max(watched[-LOOKS:]))
+        if left <= max(asks, least):
             error = np.where(found == 0, 0.0, np.maximum(left, rounded) + folded)
             return Settled(found, error, bool(apart <= most))
     change = changes[1][-1] / np.abs(motion).max()

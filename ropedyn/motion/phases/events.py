@@ -34,8 +34,8 @@ class Followed(NamedTuple):
     """A motion."""
 
     seen: list[Real]  # (points, t) of each look
-    size: list[Real]  # (points,) of the modes that these are the sum of
-    rounded: list[Real]  # (points,) what rounding of their shapes does to these
+    # (2, points) of the modes that these are the sum of, and what rounding of shapes does to these
+    size: list[Real]
     events: list[float]  # [s]
     whole: bool  # whether no mode is left out
     modes: int
@@ -45,23 +45,20 @@ class Followed(NamedTuple):
 def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> Followed:
     """Return what is seen, (points, t) of each look, of a motion whose push is nudged."""
     seen = [np.zeros((len(one.points), len(one.time))) for one in looks]
-    sizes, rounded = ([np.zeros(len(one.points)) for one in looks] for _ in range(2))
+    sizes = [np.zeros((2, len(one.points))) for one in looks]
     events: list[float] = []
     whole, until = True, math.inf
     components = moving_components(run, looks, modes)
     for one in components:
         walk, reached = PhaseWalk(one.system, OFF if nudge else 0.0), float(run.time[0])
-        forces = [run.forces[k] for k in one.drives]
+        forces, st = [run.forces[k] for k in one.drives], one.system.states
+        shapes = np.stack([st.seen, st.wrong * st.seen])
         try:
             for visit in walk.visits(rest(one, nudge), pieces(forces, run.time, 1 + nudge)):
                 is_last = visit.stop >= run.time[-1]
-                st = one.system.states
-                for k, (look, value, (rows, which)) in enumerate(zip(looks, seen, one.watched)):
-                    for each, of in (
-                        (sizes[k], st.seen[rows]),
-                        (rounded[k], st.wrong * st.seen[rows]),
-                    ):
-                        each[which] = np.maximum(each[which], visit.size(of, look.order))
+                for look, value, size, (rows, which) in zip(looks, seen, sizes, one.watched):
+                    moved = visit.size(shapes[:, rows], look.order)
+                    size[:, which] = np.maximum(size[:, which], moved)
                     _record(visit, look, value, rows=rows, which=which, last=is_last)
                 reached = visit.stop
                 run.progress(min(1.0, (visit.stop - run.time[0]) / one.system.span))
@@ -71,7 +68,7 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
             break
         events += [at for at, _ in walk.events]
         whole = whole and one.is_whole
-    return Followed(seen, sizes, rounded, sorted(events), whole, modes, until)
+    return Followed(seen, sizes, sorted(events), whole, modes, until)
 
 
 def _record(
@@ -170,12 +167,13 @@ def _running(difference: Real) -> Real:
 
 def _rounding(found: Followed) -> Real:
     """Return what rounding leaves of modes that cancel, as where a point is held."""
-    return (ROUNDED * found.size[0] + found.rounded[0])[:, None]
+    size, shaped = found.size[0]
+    return (ROUNDED * size + shaped)[:, None]
 
 
 def _allowed(found: Followed, tolerance: float) -> Real:
     """Return the error within a tolerance, (responses, 1); of what is still what makes it so."""
-    value, nothing = np.abs(found.seen[0]).max(axis=1, initial=0.0), HELD * found.size[0]
+    value, nothing = np.abs(found.seen[0]).max(axis=1, initial=0.0), HELD * found.size[0][0]
     return np.where(value > nothing, tolerance * value, nothing)[:, None]
 
 
