@@ -41,6 +41,7 @@ from .stretching import StretchedPassage
 from .system import LawQuestion, LawSystem, OutputTimes
 
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
+HALVED = 2.0  # A run is off by so many times its distance to one with half: errors fall as 1/modes.
 MOST_STEPS = 2_000_000  # A run takes so many steps at most,
 HARD = 10  # or so many halvings of steps that do not converge.
 BENDS = 8.0  # Half the step divides the highest degree of smooth forces by as much at least;
@@ -265,7 +266,7 @@ def component_motion(
         found.stages += passed.stages
         looked = fewer.without_laws()[0] + passed.looked[0]
         apart = np.abs(looked - found.looked[0]).max(axis=1, initial=0.0)
-        found.truncation = apart if passed.error is None else np.full(len(apart), np.inf)
+        found.truncation = HALVED * apart if passed.error is None else np.full(len(apart), np.inf)
         wrong = found.truncation + found.step_error.max(axis=1, initial=0.0)
         most = allowed(found.looked[0], tolerance, watched)
         worst = tolerance * float((wrong / most).max(initial=0.0))
