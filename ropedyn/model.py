@@ -527,8 +527,10 @@ class Model(Compiled):
 
         What has the frequency of the drive: of linear scenes and with `WireFriction` as `frf`, of
         others by harmonic balance.
-        The first state is reached from rest, each other one along the branch from the one before,
-        and where that ends on the next stable one it leads to.
+        The first state is reached from rest as the amplitude is raised, each other one along the
+        branch from the one before, and where that ends on the next stable one it leads to.
+        Friction that can hold does so where the rope rests: beside stops and smooth laws a sudden
+        start may end in another state, in which it holds elsewhere.
 
         Parameters
         ----------

@@ -344,6 +344,23 @@ def test_friction_beside_dampers_that_couple_modes_is_stepped(exponent):
         assert abs(stepped.value / exact.value - 1)[0, 0] <= stepped.rounding_error[0, 0]
 
 
+def test_turns_that_ends_of_steps_attract_are_as_wrong_as_is_said():
+    """Where each run has ends of steps that the ones before had, all agree on a wrong turn."""
+    parts = [rd.Dashpot(0.5, 0.2, exponent=0.0)]
+    weak = (rd.RayleighDamping(40.0, 0.0), rd.StiffnessDamping(1e-9))
+    plain, coupled = (
+        rubbed(0.1, parts=parts, damping=one).compile(elements=4, element="rigid")
+        for one in (weak[0], weak)
+    )
+    lines, asked = [21.0, 25.0, 30.0, 37.0, 45.0], {"drive": ("z", 0.5), "amplitude": 1.0}
+    exact = plain.stepped_sine(lines, tolerance=1e-6, **asked)
+    stepped = coupled.stepped_sine(lines, tolerance=3e-4, **asked)
+    assert (exact.cost.method, stepped.cost.method) == ("events", "steps")
+    off = np.abs(stepped.value / exact.value - 1)
+    assert (off <= stepped.rounding_error + exact.rounding_error).all()
+    assert stepped.rounding_error.max() <= 3e-4
+
+
 def test_internal_forces_beside_friction_that_hardly_rubs_are_those_without():
     asked = {"drive": ("z", 0.25), "response": [("z", 0.5), ("F_z", 0.5), ("M_beta", 0.5)]}
     how = {"damping": rd.RayleighDamping(20.0, 2e-4)}

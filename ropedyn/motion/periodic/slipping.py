@@ -12,6 +12,7 @@ from ...base.answer import Cost
 from ...base.array import Complex, Real
 from ...base.errors import SolveError
 from ...chain.port import Point, moving
+from ...eigen.damped.residue import spread
 from ...response.frf import FRF
 from ...scene.force import Sine
 from ...signal.spectrum import amplitudes
@@ -37,7 +38,9 @@ AS_BEFORE = 0.9  # Changes that are not below so much of those before do not dec
 TOLERANCE = 1e-3  # Of the steady state where none is given.
 SAMPLES = 1024  # Of a period, in exact phases: what slips has harmonics that fall as 1/k^3.
 MODES = 64  # Of continuous spans; half of them tell the error.
-FEWEST, MOST = 128, 1 << 15  # A period takes from so many steps to so many.
+COUNTS = 128, 281, 619, 1361, 2995, 6589, 14497, 31893  # Steps of a period, of one run after
+FINER = 2.2  # another. Ends of steps attract turns: no other run's are where one has them,
+RUNS = 3  # and so many are asked.
 ROUNDING = 1e-12  # Of what responses are added up of: modes are known to so much.
 
 
@@ -182,7 +185,7 @@ class StepsGoOn:
         self.system, self.mine, self.push = system, mine, push
         self.sigma = system.modes.sigma
         self.state = np.zeros((2, len(system.modes.sigma)))  # all of the motion
-        self.count = FEWEST
+        self.count, self.late = COUNTS[0], 0.0  # steps of a period, which begins so much of one later
 
     def disturb(self, speed: Real) -> None:
         """Let the modes move faster by these, (k,)."""
@@ -191,12 +194,13 @@ class StepsGoOn:
     def window(self, frequency: float, periods: range) -> MeanAmplitudes:
         """Follow some periods."""
         modes, omega, count = self.system.modes, 2 * np.pi * frequency, self.count
-        begin, h = periods[0] / frequency, 1 / (frequency * count)
-        turn = np.exp(2j * np.pi / count * np.arange(count * len(periods) + 1))
+        h = 1 / (frequency * count)
+        begin = periods[0] / frequency + self.late * h
+        turn = np.exp(2j * np.pi / count * (self.late + np.arange(count * len(periods) + 1)))
         still = modes.square - omega**2 + 2j * omega * modes.sigma
         own = self.push.amplitude * self.system.push.sum(axis=0) / still
         known, rate = (own * turn[:, None]).real, (1j * omega * own * turn[:, None]).real
-        first = np.stack([own.real, (1j * omega * own).real])
+        first = np.stack([known[0], rate[0]])
         stepper = Stepper(self.system, self.state - first)
         found = stepper.take(begin, h, known)
         if found.error is not None:
@@ -209,7 +213,7 @@ class StepsGoOn:
         seen = modes.seen[of] @ Q + modes.swept[of] @ V
         time = np.asarray(begin + h * np.arange(len(turn) - 1.0))
         seen += self.system.pull(time, Q)
-        each = amplitudes(np.concatenate([seen, Q]), count)
+        each = amplitudes(np.concatenate([seen, Q]), count) / turn[0]
         found, own = each.mean(axis=1), len(self.mine)
         parts = np.abs(modes.seen[of]) @ np.abs(found[own:])
         return MeanAmplitudes(found[:own], each[own:], parts)
@@ -231,23 +235,22 @@ def _by_steps(
     tolerance = asked.tolerance or TOLERANCE
     for f in asked.frequency.tolist():
         before: Complex | None = None
-        apart = np.full(len(asked.responses), math.inf)
-        for count in 2 ** np.arange(FEWEST.bit_length() - 1, MOST.bit_length()):
+        apart = np.zeros(len(asked.responses))
+        for k, (count, late) in enumerate(zip(COUNTS, spread(len(COUNTS)).tolist()), start=1):
             for one in rows:
-                one.count = int(count)
+                one.count, one.late = count, late
             found = _settled(asked, rows, f, turn(f))
             most = np.abs(found.value).max()
             if before is not None:
                 # where velocities turn, errors fall with the step and two runs may agree by chance
-                now = np.abs(found.value - before)
-                apart = np.where(np.isinf(apart), now * 2, np.maximum(now, apart / 2))
-                if (2 * apart + found.error <= tolerance * most).all():
-                    break
+                apart = np.maximum(np.abs(found.value - before), apart / FINER)
+            if k >= RUNS and (2 * apart + found.error <= tolerance * most).all():
+                break
             before = found.value
         else:
             share = float((apart / most).max())
             raise SolveError(
-                f"frequency {f!r} Hz: with {MOST} steps a period the amplitude is still known to "
+                f"frequency {f!r} Hz: with {COUNTS[-1]} steps a period the amplitude is still known to "
                 f"{share:.1e} only: ask for a larger tolerance"
             )
         yield found._replace(error=2 * apart + found.error)
