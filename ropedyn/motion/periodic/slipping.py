@@ -38,9 +38,8 @@ AS_BEFORE = 0.9  # Changes that are not below so much of those before do not dec
 TOLERANCE = 1e-3  # Of the steady state where none is given.
 SAMPLES = 1024  # Of a period, in exact phases: what slips has harmonics that fall as 1/k^3.
 MODES = 64  # Of continuous spans; half of them tell the error.
-COUNTS = 128, 281, 619, 1361, 2995, 6589, 14497, 31893  # Steps of a period, of one run after
-FINER = 2.2  # another. Ends of steps attract turns: no other run's are where one has them,
-RUNS = 3  # and so many are asked.
+COUNTS = 128, 282, 620, 1364, 3000, 6600, 14520, 31944  # Steps of a period, in two runs: ends of
+FINER = 2.2  # steps attract turns, and are half a step further in the second.
 ROUNDING = 1e-12  # Of what responses are added up of: modes are known to so much.
 
 
@@ -185,7 +184,10 @@ class StepsGoOn:
         self.system, self.mine, self.push = system, mine, push
         self.sigma = system.modes.sigma
         self.state = np.zeros((2, len(system.modes.sigma)))  # all of the motion
-        self.count, self.late = COUNTS[0], 0.0  # steps of a period, which begins so much of one later
+        self.count, self.late = (
+            COUNTS[0],
+            0.0,
+        )  # steps of a period, which begins so much of one later
 
     def disturb(self, speed: Real) -> None:
         """Let the modes move faster by these, (k,)."""
@@ -232,28 +234,32 @@ def _by_steps(
         system = CoupledSystem.coupled(given, component, points, [look])
         if len(system.push) or any(one.law.call for one in system.acting):
             rows.append(StepsGoOn(system, mine, push))
-    tolerance = asked.tolerance or TOLERANCE
     for f in asked.frequency.tolist():
-        before: Complex | None = None
-        apart = np.zeros(len(asked.responses))
-        for k, (count, late) in enumerate(zip(COUNTS, spread(len(COUNTS)).tolist()), start=1):
+        yield _stepped(asked, rows, f, turn(f))
+
+
+def _stepped(asked: SteppedSine, rows: Sequence[StepsGoOn], frequency: float, turn: int) -> Settled:
+    """Follow the motion in shorter and shorter steps."""
+    before: Complex | None = None
+    apart = np.zeros(len(asked.responses))
+    for count, late in zip(COUNTS, spread(len(COUNTS)).tolist()):
+        both = []
+        for later in (late, late + 0.5):
             for one in rows:
-                one.count, one.late = count, late
-            found = _settled(asked, rows, f, turn(f))
-            most = np.abs(found.value).max()
-            if before is not None:
-                # where velocities turn, errors fall with the step and two runs may agree by chance
-                apart = np.maximum(np.abs(found.value - before), apart / FINER)
-            if k >= RUNS and (2 * apart + found.error <= tolerance * most).all():
-                break
-            before = found.value
-        else:
-            share = float((apart / most).max())
-            raise SolveError(
-                f"frequency {f!r} Hz: with {COUNTS[-1]} steps a period the amplitude is still known to "
-                f"{share:.1e} only: ask for a larger tolerance"
-            )
-        yield found._replace(error=2 * apart + found.error)
+                one.count, one.late = count, later
+            both.append(_settled(asked, rows, frequency, turn))
+        value = (both[0].value + both[1].value) / 2
+        most, error = np.abs(value).max(), np.maximum(both[0].error, both[1].error)
+        apart = np.maximum(np.abs(both[0].value - value), apart / FINER)
+        if before is not None:
+            apart = np.maximum(apart, np.abs(value - before))
+            if (2 * apart + error <= (asked.tolerance or TOLERANCE) * most).all():
+                return Settled(value, 2 * apart + error, both[0].repeats and both[1].repeats)
+        before = value
+    raise SolveError(
+        f"frequency {frequency!r} Hz: with {COUNTS[-1]} steps a period the amplitude is still "
+        f"known to {float((apart / most).max()):.1e} only: ask for a larger tolerance"
+    )
 
 
 # --- until nothing changes ------------------------------------------------------------------------
