@@ -73,7 +73,7 @@ def beside_ratios(model: Compiled) -> list[str]:
     """Name what damps beside ratios of modes."""
     scene, chain = model.scene, model.chain
     others = [one.kind for one in damping.having(scene.dampings, "rate", "loss", "drag")]
-    if "dashpot" in scene.effects:
+    if "dashpot" in scene.effects and chain.damping is not None:  # not powers alone
         others.append("dashpot")
     return [*others, *(chain.carried if chain.resists else [])]
 

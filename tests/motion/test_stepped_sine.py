@@ -337,6 +337,22 @@ def test_friction_that_just_slips_is_known_as_far_as_is_said(force, frequency, r
     assert (apart <= 1e-3 * np.abs(exact.value)).all()
 
 
+@pytest.mark.parametrize(("force", "method"), [(0.1, "events"), (5.0, "balance")])
+def test_ratios_of_modes_stand_beside_friction(force, method):
+    """As drag that is the same for each mode; friction was called a dashpot, and refused."""
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+    omega = 2 * np.pi * scene.compile(elements=4, element="rigid").modes(3).frequency
+    friction, answers = rd.Dashpot(0.5, force, exponent=0.0), []
+    for damping in (rd.RayleighDamping(4.0, 0.0), rd.ModalDamping((2.0 / omega).tolist())):
+        damped = scene.replace(damping=damping, parts=[friction])
+        model = damped.compile(elements=4, element="rigid")
+        answers.append(model.stepped_sine([12.0], drive=("z", 0.25), amplitude=1.0))
+        assert answers[-1].cost.method == method
+    drag, ratios = answers
+    off = np.abs(ratios.value / drag.value - 1)
+    assert (off <= drag.rounding_error + ratios.rounding_error + 1e-12).all()
+
+
 def test_friction_that_slides_all_the_time_beside_a_stop_has_a_steady_state():
     """While all friction holds nothing is found from rest, and it was refused."""
     parts = [
