@@ -312,6 +312,10 @@ class Chain(NamedTuple):
         if self.is_spatial:
             of = [0, 1, CHANNELS["gamma" if ROLE.keys() & set(coordinates) else "beta"]]
             flexibility = np.ascontiguousarray(flexibility[:, of][:, :, of])
+        # channels of other coordinates do not matter, and must not look as if they coupled
+        used = np.isin(range(flexibility.shape[1]), [CHANNELS[ROLE.get(c, c)] for c in coordinates])
+        matters = np.outer(used, used) | np.eye(len(used), dtype=np.bool_)
+        flexibility = np.where(matters, flexibility, 0.0)
         return self._replace(
             coordinate=np.array(wanted, dtype=np.int32),
             flexibility=flexibility,

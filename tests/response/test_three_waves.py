@@ -55,6 +55,20 @@ def test_damped_laid_rope_responds_as_the_continuum(tension, damping, claim):
         claim(max(errors(scene, f, ("z", 0.4), [("z", 0.9), ("alpha", 0.4)])))
 
 
+@pytest.mark.parametrize("bending", [None, 0.2])
+def test_waves_across_a_rope_whose_lay_only_twists_it_are_those_without_lay(bending):
+    """Bit for bit: they were walked in thousands of pieces as if the lay coupled them."""
+    rope = rd.Rope(10.4, 0.118, bending_stiffness=bending, torsional_stiffness=15.0)
+    laid = rope.replace(axial_stiffness=1.2e5, lay_coupling=1.9, polar_inertia=1.3e-3)
+    f, place = np.array([1.0, 40.0, 3e3, 1e5]), ("z", 2.1)
+    lines = [
+        rd.Scene(one, tension=142.0, damping=rd.RayleighDamping(0.9, 2.4e-7)).compile()
+        for one in (laid, rope.replace(torsional_stiffness=None))
+    ]
+    across, plain = (one.frf(f, drive=place, response=place).value for one in lines)
+    assert np.array_equal(across, plain)
+
+
 @pytest.mark.parametrize("kl", [0.2, 1.8, 90.0])
 @pytest.mark.parametrize(("tension", "stiffness"), [(2e3, 1e7), (1e5, 1e5)])
 @pytest.mark.claim(
