@@ -121,6 +121,15 @@ def test_energy_between_nodes_is_refused_where_the_element_gives_way_to_more(ten
     assert model.transient(time, drive=("z", NODE), **asked).energy["input"].any()
 
 
+@pytest.mark.parametrize("part", [DASHPOT, HARDENING])
+def test_energy_of_spans_that_steps_would_tell_is_refused(part):
+    """Between the nodes of spans it was a bare error about lumps."""
+    model = rd.Scene(STRING, tension=TENSION, parts=[part]).compile()
+    history = model.transient(np.linspace(0.0, 0.01, 11), drive=("z", INSIDE), force=FORCE)
+    with pytest.raises(rd.SceneError, match="elements must be given where steps follow all modes"):
+        _ = history.energy
+
+
 def test_a_law_beside_drag_that_inertia_of_turning_has_none_of_moves_nothing():
     """What rounding leaves of motion that is 0 by symmetry ended the run."""
     time = np.linspace(0.0, 0.06, 301)

@@ -36,8 +36,6 @@ def balance(run: Run, solve: Solve | None = None) -> Balance:
     """Return the energies at the times of a run on a chain; `solve` tells motion exactly."""
     refuse_moved_ends(run)
     total = np.zeros((len(NAMES), len(run.time)))
-    for component in run.model.components:
-        total[:4] += _inside_elements(run, component)
     laws = scene_laws(run.model.scene)
     calls = any(one.law.kind == "call" for one in laws)
     for component in moving_together(run.model):
@@ -49,6 +47,8 @@ def balance(run: Run, solve: Solve | None = None) -> Balance:
             if solve is not None and places:
                 exact = solve(run.but(responses=tuple(places), order=0))
                 _refuse_other_motion(exact.value, moved[0], run)
+    for component in run.model.components:
+        total[:4] += _inside_elements(run, component)
     energy = dict(zip(NAMES, total))
     if all(one.law.kind == "power" for one in laws):
         del energy["laws"]
