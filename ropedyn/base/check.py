@@ -124,6 +124,8 @@ def numbers(value: Any, name: str, unit: str = "", *, sign: str = "any") -> NDAr
         value = [number(one, f"{name}[{k}]", unit) for k, one in enumerate(value)]
     if value is None or isinstance(value, (str, bytes)):
         raise TypeError(_expected(name, what, unit, value))
+    if np.ma.is_masked(value):  # what is masked is no number
+        value = value.astype(np.float64).filled(np.nan)
     try:
         array = np.atleast_1d(np.asarray(value))
     except (TypeError, ValueError) as error:

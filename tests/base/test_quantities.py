@@ -279,6 +279,13 @@ def test_arrays_without_meaning_are_refused(given):
         check.frequencies(given)
 
 
+def test_what_is_masked_is_no_number():
+    force = np.ma.masked_array([1, 2, 3], mask=[False, True, False])
+    with pytest.raises(rd.SceneError, match=r"force\[1\] must be a finite number, got nan"):
+        check.numbers(force, "force")
+    assert check.numbers(np.ma.masked_array([1, 2]), "force").tolist() == [1.0, 2.0]
+
+
 def test_an_array_is_no_number():
     with pytest.raises(TypeError, match="tension must be a finite number"):
         rd.Scene(rd.Rope(1.0, 0.1), tension=Q([1.0, 2.0], "N"))
