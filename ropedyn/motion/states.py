@@ -41,7 +41,8 @@ ROUND = 1e-11  # What modes leave of this share is rounding.
 FEW = 16  # Nodes whose damping is not as their mass are points of their own, at most.
 UNMOVED = 1e-20  # Below this share of the largest residue of a point it does not move.
 PROBES = 8  # Modes that lie close together are told apart at so many places
-SEEN = 1e-4  # that see so much of each.
+SEEN = 1e-4  # that see so much of each,
+MIXED = 4 * np.finfo(float).eps  # and which is which to this over the distance between them.
 
 
 class Resistance(NamedTuple):
@@ -255,7 +256,7 @@ def states(
         beyond=beyond,
         drag=drag,
         ratio=float(ratio.max(initial=0.0)),
-        wrong=circles.rounding[own],
+        wrong=(circles.rounding + _mixed(eigenvalue, circles, sigma))[own],
         left=left,
     )
 
@@ -316,6 +317,18 @@ def _parted_points(
     own, push, seen = _factored(residue, eigenvalue, circles, every)
     i, o = ([one.index(p) for p in given] for one, given in zip((drives, responses), both))
     return own, push[:, i], seen[o], rest[np.ix_(o, i)]
+
+
+def _mixed(eigenvalue: Real, circles: contour.Circles, sigma: Real) -> Real:
+    """Return what it does that of close modes, each damped otherwise, few digits tell which is."""
+    wrong = np.zeros(len(eigenvalue))
+    for members in (one for one in circles.members if len(one) > 1):
+        value, rate = eigenvalue[members], sigma[members]
+        size, damped = np.abs(value).max(), max(float(rate.max()), np.finfo(float).tiny)
+        apart, gap = (np.abs(np.subtract.outer(one, one)) for one in (rate, value))
+        share = MIXED * apart / damped / (gap / size + np.finfo(float).eps)
+        wrong[members] = np.minimum(share.max(axis=1), 1.0)
+    return wrong
 
 
 def _probes(model: Compiled, component: tuple[str, ...]) -> list[Point]:
@@ -427,12 +440,15 @@ def _largest(R: Real, size: Real, twin: Index, *, alone: bool) -> _Product | Non
     scale = np.sqrt(np.abs(R[i, o]))
     push, seen = R[:, o] / (scale * np.sign(R[i, o])), R[i, :] / scale
     if alone or twin[i] == o:
-        _alike(push, seen, twin)
+        _alike(push, seen, twin, size[:, o], size[i])
     return _Product(push, seen, own[best] if own else 0.0)
 
 
-def _alike(push: Real, seen: Real, twin: Index) -> None:
-    """Make what is pushed and watched move by what it is pushed with, to the last digit."""
+def _alike(push: Real, seen: Real, twin: Index, off: Real, away: Real) -> None:
+    """Make what is pushed and watched move by what it is pushed with, to the last digit.
+
+    Of both, what is wrong by a smaller part of `off` and `away` counts more.
+    """
     i = np.flatnonzero(twin >= 0)
     o = twin[i]
     moved = push[i] * seen[o]
@@ -441,7 +457,11 @@ def _alike(push: Real, seen: Real, twin: Index) -> None:
         ratio = np.sqrt(seen[o[best]] / push[i[best]])
         push *= ratio
         seen /= ratio
-        push[i] = seen[o] = (push[i] + seen[o]) / 2
+        a, b = (off[i] * ratio) ** 2, (away[o] / ratio) ** 2
+        half = np.full(len(i), 0.5)
+        push[i] = seen[o] = seen[o] + (push[i] - seen[o]) * np.divide(
+            b, a + b, out=half, where=a + b > 0
+        )
 
 
 def _turned(whole: list[_Product], moment: Real) -> list[_Product]:
