@@ -50,7 +50,9 @@ def polyline(points: Real, fillet: float | None) -> list[tuple[UniformPiece, Rea
     steps = np.diff(points, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     along = steps / lengths[:, None]
-    corners = [_corner(k, one, other, fillet) for k, (one, other) in _pairs(along)]
+    corners = [
+        _corner(k, one, other, fillet) for k, (one, other) in enumerate(itertools.pairwise(along))
+    ]
     cuts = [0.0, *(corner.cut for corner in corners), 0.0]
     pieces, frame = [], _first_frame(along[0], corners)
     for k, direction in enumerate(along):
@@ -71,10 +73,6 @@ def polyline(points: Real, fillet: float | None) -> list[tuple[UniformPiece, Rea
                 arc = UniformPiece(fillet * corner.angle, 0.0, 1 / fillet)
                 pieces.append((arc, points[k + 1] - corner.cut * direction, frame))
     return pieces
-
-
-def _pairs(along: Real) -> enumerate[tuple[Real, Real]]:
-    return enumerate(itertools.pairwise(along))
 
 
 def _corner(k: int, one: Real, other: Real, fillet: float | None) -> Corner:

@@ -101,7 +101,8 @@ def _answers(
     rest, at = np.flatnonzero(left.any(axis=1)), pushing + heard
     for which, cut, chains in _chains(component, np.array([p[1] for p in at]), number[rest]):
         ports = _ports(component, cut, at)
-        pushed, watched = (Ports(ports.node[s], ports.row[s], None) for s in _parts(len(drives)))
+        parts = slice(None, len(drives)), slice(len(drives), None)
+        pushed, watched = (Ports(ports.node[s], ports.row[s], None) for s in parts)
         column = [component.coordinates.index(p[0]) for p in at]
         for k, chain in zip(rest[which].tolist(), chains):
             lines = np.ascontiguousarray(factor[:, left[k]])
@@ -123,10 +124,6 @@ def _joined(
     for whole, part in zip(known, answer):
         whole[..., lines] = part
     return False, known
-
-
-def _parts(drives: int) -> tuple[slice, slice]:
-    return slice(None, drives), slice(drives, None)
 
 
 def _ports(component: Component, cut: Cut, at: Sequence[Point]) -> Ports:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -270,13 +271,10 @@ def _checked_snapshots(given: Any, time: Real) -> Real:
     return when
 
 
-def _points(model: Compiled, given: Any) -> tuple[tuple[Point, ...], bool]:
-    return points(model, given, "drive", forces=False, ends=True)
-
-
 def _holds(model: Compiled, point: Point) -> bool:
     return is_held(model.chain, model.x, model.coordinates, point)
 
 
-STRAIGHT = Kind(_chosen, _points, _holds, observed, released, kicked, Transfer)
+DRIVEN = partial(points, name="drive", forces=False, ends=True)
+STRAIGHT = Kind(_chosen, DRIVEN, _holds, observed, released, kicked, Transfer)
 """Of chains and spans of a straight rope."""

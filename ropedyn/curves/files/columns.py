@@ -132,7 +132,10 @@ def _sheet(file: Path, text: str, layout: Layout) -> Sheet:
     """Split text into numbers, with the number of the line for what is none."""
     what = f"path must be a file with numbers in columns, got {str(file)!r}"
     lines = [(k, line) for k, line in enumerate(text.splitlines(), start=1) if k > layout.skip]
-    lines = [(k, line) for k, line in lines if line.strip() and not _is_comment(line, layout)]
+    begins = layout.comments or ()
+    lines = [
+        (k, line) for k, line in lines if line.strip() and not line.lstrip().startswith(begins)
+    ]
     if not lines:
         raise SceneError(f"{what} without a line")
     separator = _separator(layout, lines[0][1])
@@ -156,10 +159,6 @@ def _sheet(file: Path, text: str, layout: Layout) -> Sheet:
             raise SceneError(f"{what} with {wrong} in line {k}{hint}")
         numbers[at] = found
     return Sheet(names, numbers)
-
-
-def _is_comment(line: str, layout: Layout) -> bool:
-    return bool(layout.comments) and line.lstrip().startswith(layout.comments)
 
 
 def _separator(layout: Layout, line: str) -> str | None:

@@ -124,7 +124,7 @@ class Channels(NamedTuple):
 def channels_of(value: Real, response: Sequence[tuple[str, float]]) -> Channels:
     """Return the channels (channels, t) whose motion can be believed, and why others cannot."""
     finite = value[:, ~np.isnan(value).any(axis=0)]
-    motion = _motion(finite)
+    motion = np.diff(finite, axis=1).std(axis=1)  # which no drift has
     notes, used = [], []
     clipped = [clipped_share(row) for row in finite]
     for k, (point, row) in enumerate(zip(response, finite)):
@@ -142,11 +142,6 @@ def channels_of(value: Real, response: Sequence[tuple[str, float]]) -> Channels:
                 notes.append(f"{name} is clipped, {_many(count, 'sample')}: used all the same")
             notes += _drifting(name, row)
     return Channels(tuple(used), notes)
-
-
-def _motion(rows: Real) -> Real:
-    """Return how large differences of samples are, which no drift has."""
-    return np.diff(rows, axis=1).std(axis=1)
 
 
 def clipped_share(row: Real) -> float:

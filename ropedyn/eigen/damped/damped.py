@@ -133,11 +133,12 @@ def _find(
         omega = _lowest(undamped, MORE * number + 4)
         most = len(omega) + (0 if model.element == "continuous" else DOUBLINGS)
         if at >= most or math.isinf(answer.radius):
+            hertz = answer.radius / (2 * math.pi)
+            where = "there are" if math.isinf(hertz) else f"below {hertz:.6g} Hz"
             raise SolveError(
-                f"number must be at most {len(answer.value)}, the damped modes "
-                f"{_where(answer.radius)}, got {number}"
+                f"number must be at most {known}, the damped modes {where}, got {number}"
             )
-        at += number - len(answer.value)
+        at += number - known
 
 
 def _lowest(undamped: list[Undamped], number: int) -> Real:
@@ -151,10 +152,6 @@ def _between(omega: Real, at: int) -> float:
     if at < len(omega):
         return float(omega[at - 1] + omega[at]) / 2
     return float(omega[-1]) * 1.5 * 2.0 ** (at - len(omega))
-
-
-def _where(radius: float) -> str:
-    return "there are" if math.isinf(radius) else f"below {radius / (2 * math.pi):.6g} Hz"
 
 
 def _below(

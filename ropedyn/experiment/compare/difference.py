@@ -191,7 +191,9 @@ def _numbers(modes: Modes) -> Real:
 def change_of_frf(whole: FRF, left: FRF) -> AnswerChange:
     """Compare a frequency response with that of what is left, line by line."""
     lines = len(whole.frequency)
-    before, after = (_known(frf).reshape(-1, lines) for frf in (whole, left))
+    # without a correct digit, as by symmetry, it counts as 0
+    known = (np.where(frf.rounding_bound < 1, frf.value, 0.0) for frf in (whole, left))
+    before, after = (one.reshape(-1, lines) for one in known)
     there = ~before.any(axis=1) | after.any(axis=1)
     before, after = before[there], after[there]
     off = (_relative_error(whole) + _relative_error(left)).reshape(-1, lines)[there]
@@ -210,11 +212,6 @@ def change_of_frf(whole: FRF, left: FRF) -> AnswerChange:
         changed=changed,
         relative=math.inf if lost else _of(np.max, _ratio(after - before, before) + off),
     )
-
-
-def _known(frf: FRF) -> Complex:
-    """Return values; one without a correct digit, as by symmetry, counts as 0."""
-    return np.where(frf.rounding_bound < 1, frf.value, 0.0)
 
 
 def _ratio(change: Complex, before: Complex) -> Real:

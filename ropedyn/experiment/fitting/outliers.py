@@ -80,12 +80,11 @@ def outliers(
             if len(found[row]) > most[row]:
                 del found[row]
         going = np.array([row for row in going[list(named)] if row in found], dtype=np.intp)
-    return [one for row in sorted(found) for one in _told(found[row])]
-
-
-def _told(found: list[Outlier]) -> list[Outlier]:
-    """Return those of a rope to the first that may be another: then no further one is told."""
-    return found[: next((i + 1 for i, one in enumerate(found) if one.rivals), len(found))]
+    told = []
+    for row in sorted(found):  # to the first that may be another: then no further one is told
+        rivals = (i + 1 for i, one in enumerate(found[row]) if one.rivals)
+        told += found[row][: next(rivals, None)]
+    return told
 
 
 @dataclass(frozen=True, eq=False)

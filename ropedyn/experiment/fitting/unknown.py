@@ -55,7 +55,9 @@ class Unknowns:
         if not every or len(set(every)) < len(every):
             raise SceneError(f"unknown must be different {_WHAT}, got {check.shown(unknown)}")
         start = np.array([_start(scene, some, i) for i, some in enumerate(places)])
-        scale = np.array([_scale(scene, some[0]) for some in places])
+        # what changes of a number that may pass 0 are measured by, 0 of others
+        first, length = [some[0] for some in places], scene.rope.length
+        scale = np.array([length if _PLACE.fullmatch(p) else float(p == _ANGLE) for p in first])
         paths = tuple(map(TIE.join, places))
         for i, path in enumerate(paths):
             if start[i] == 0 and scale[i] == 0:
@@ -220,11 +222,6 @@ def _refuse_nuisance(scene: Scene, path: str) -> None:
 def _may_pass_zero(path: str) -> bool:
     """Whether a number may pass 0."""
     return path == _ANGLE or _PLACE.fullmatch(path) is not None
-
-
-def _scale(scene: Scene, path: str) -> float:
-    """Return what the changes of a number that may pass 0 are measured by, 0 of others."""
-    return scene.rope.length if _PLACE.fullmatch(path) else float(path == _ANGLE)
 
 
 def _start(scene: Scene, places: tuple[str, ...], i: int) -> float:

@@ -25,13 +25,12 @@ def assumed(task: PosteriorTask, space: Space) -> tuple[str, ...]:
     """Return everything that was taken for granted."""
     said = [*_of_tension(space), *_of_stiffness(space), *_of_ends(task, space)]
     said += space.belief.said
-    known = [path for path in EXACT if path not in space.paths and _there(task, path)]
+    rope = task.scene.rope
+    known = [
+        path for path in EXACT if path not in space.paths and getattr(rope, path, None) is not None
+    ]
     said += [f"{p} {value_at(task.scene, p):.6g} {unit_of(p)}, exactly" for p in known]
     return (*said, _of_noise(task))
-
-
-def _there(task: PosteriorTask, path: str) -> bool:
-    return getattr(task.scene.rope, path, None) is not None
 
 
 def _of_tension(space: Space) -> list[str]:

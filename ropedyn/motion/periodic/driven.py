@@ -115,7 +115,8 @@ class Driven:
     @computed
     def keeps_time(self) -> bool:
         """Whether nothing but the drive depends on time."""
-        pulsates = self.tension is not None and _pulsates(self.asked)
+        tension = self.asked.model.scene.tension
+        pulsates = self.tension is not None and isinstance(tension, Tension) and tension.pulsates
         return not pulsates and all(self._comes_back(one, 0.0) for one in self.laws)
 
     def turn(self, frequency: float) -> int:
@@ -212,11 +213,6 @@ def known_to(found: FRF) -> Real:
     size = np.abs(found.value).reshape(-1, len(found.frequency))
     wrong = found.rounding_limit.reshape(size.shape)
     return wrong.max(axis=0) / np.maximum(size.max(axis=0), np.finfo(float).tiny)
-
-
-def _pulsates(asked: SteppedSine) -> bool:
-    tension = asked.model.scene.tension
-    return isinstance(tension, Tension) and tension.pulsates
 
 
 def _string(

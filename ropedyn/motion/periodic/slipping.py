@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,19 +60,6 @@ class Settled(NamedTuple):
     repeats: bool  # whether after one period, or turn
 
 
-class Goes(Protocol):
-    """A motion that goes on from look to look."""
-
-    mine: list[int]  # Which of the responses it has
-    sigma: Real  # (k,) how its modes decay where nothing holds [1/s]
-
-    def window(self, frequency: float, periods: range) -> MeanAmplitudes:
-        """Follow some periods."""
-
-    def disturb(self, speed: Real) -> None:
-        """Let the modes move faster by these, (k,)."""
-
-
 def slipping(asked: SteppedSine, turn: Callable[[float], int]) -> FRF:
     """Follow the motion through the frequencies in their order, see `Model.stepped_sine`.
 
@@ -102,6 +89,7 @@ class PhasesGoOn:
     """One component from event to event."""
 
     def __init__(self, one: Moving, push: Sine, points: Sequence[Point]) -> None:
+        # sigma: how modes decay where nothing holds; mine: which of the responses it has
         self.one, self.push, self.sigma = one, push, one.system.states.sigma
         ((self.rows, self.mine),) = one.watched
         held, before = one.system.laws.frictions, len(one.system.laws.contacts)
@@ -263,6 +251,9 @@ def _stepped(asked: SteppedSine, rows: Sequence[StepsGoOn], frequency: float, tu
 
 
 # --- until nothing changes ------------------------------------------------------------------------
+
+Goes = PhasesGoOn | StepsGoOn
+"""A component's motion that goes on from look to look."""
 
 
 def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: int) -> Settled:

@@ -85,7 +85,9 @@ def settled(driven: Driven, states: list[SteadyState]) -> list[SteadyState] | No
     left = np.full(len(rough), np.inf)
     while len(rough):
         if 2 * balance.harmonics > MOST * balance.turn:
-            lost = [_as_asked(found[k]) for k in rough]
+            # of a step nobody asked for, its error across the branch is said
+            each = (found[k] for k in rough)
+            lost = [s if s.kind == "asked" else s._replace(change=s.across) for s in each]
             left = _felt(driven, lost) if np.isfinite(left).all() else left
             if (left > tolerance).any():
                 raise SolveError(
@@ -104,11 +106,6 @@ def settled(driven: Driven, states: list[SteadyState]) -> list[SteadyState] | No
         on = (left > tolerance) | ~np.array([one.is_sure for one in finer])
         rough, left = rough[on], left[on]
     return found
-
-
-def _as_asked(state: SteadyState) -> SteadyState:
-    """Return a step as it is across the branch: nobody asked for it, and its error is said."""
-    return state if state.kind == "asked" else state._replace(change=state.across)
 
 
 def _finer(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import KW_ONLY
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ...base import check
@@ -20,10 +21,6 @@ if TYPE_CHECKING:
 
 MOST_WIRES = 10_000  # In one layer.
 ROOM = 0.9  # Neighbours whose centres are nearer than this part of their diameter overlap.
-
-
-def _count(value: Any) -> int:
-    return check.count(value, "count", most=MOST_WIRES)
 
 
 def _element(value: Any) -> Wire | Construction:
@@ -70,7 +67,7 @@ class Layer(Description):
     (0.003835,)
     """
 
-    count: int = given(_count)
+    count: int = given(partial(check.count, name="count", most=MOST_WIRES))
     element: Wire | Construction = given(_element)
     _: KW_ONLY
     lay: float = number("m", sign="positive")
