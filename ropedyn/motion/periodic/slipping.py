@@ -26,7 +26,7 @@ from ..smooth.system import OutputTimes
 from .asked import SteppedSine
 
 WINDOW = 8  # The amplitude is looked at after so many periods at least.
-LOOKS = 4  # So many looks in a row must agree.
+LOOKS = 4  # So many looks in a row must agree, and as many once more: what is slow shows late.
 LONGEST = 100_000  # A motion that changes after so many periods is said not to settle.
 DECAY = 4.0  # After so many time constants the changes are compared with those before,
 LEAST = 256  # and not before so many periods;
@@ -263,6 +263,7 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
     # changes of what is seen, of all motion and of how periods differ from their mean
     changes: list[list[float]] = [[], [], []]
     before: tuple[Complex, ...] = ()
+    calm = 0
     for k in range(max(LONGEST // periods, LOOKS + 1)):
         found = np.zeros(len(asked.responses), dtype=np.complex128)
         rounded, folded = np.zeros((2, len(found)))
@@ -294,7 +295,8 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
         goes = ahead / max(moves[-LOOKS:]) if ahead > 0 else 0.0
         asks, least = share * np.abs(found).max(), rounded.max()
         left = max(_left(watched, max(ALIKE * asks, least)), goes * max(watched[-LOOKS:]))
-        if left <= max(asks, least):
+        calm += left <= max(asks, least)
+        if calm > LOOKS and left <= max(asks, least):
             error = np.where(found == 0, 0.0, np.maximum(left, rounded) + folded)
             return Settled(found, error, bool(apart <= most))
     change = changes[1][-1] / np.abs(motion).max()
