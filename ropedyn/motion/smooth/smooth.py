@@ -41,7 +41,8 @@ from .stretching import StretchedPassage
 from .system import LawQuestion, LawSystem, OutputTimes
 
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
-HALVED = 2.0  # A run is off by so many times its distance to one with half: errors fall as 1/modes.
+HALVED = 2.5  # A run is off by so many times its distance to one with half: errors fall as 1/modes.
+NEAR = 2.0  # Radians of the first mode left out in which a front passes, halfway the same in both.
 MOST_STEPS = 2_000_000  # A run takes so many steps at most,
 HARD = 10  # or so many halvings of steps that do not converge.
 BENDS = 8.0  # Half the step divides the highest degree of smooth forces by as much at least;
@@ -258,14 +259,20 @@ def component_motion(
     count = MODES
     while True:
         system = LawSystem.of(run, asked, count)
-        found = agree(system, tolerance, run, watched, LawPassage)
-        if found.error is not None or not np.isfinite(system.beyond):
+        if not np.isfinite(system.beyond):
+            return agree(system, tolerance, run, watched, LawPassage)
+        near = looks[0].time + NEAR / system.beyond * np.array([[-1.0], [1.0]])
+        near = np.unique(np.clip(near, *run.time[[0, -1]]))
+        found = agree(system.looking(near), tolerance, run, watched, LawPassage)
+        beside = found.looked.pop()
+        if found.error is not None:
             return found
-        fewer = LawSystem.of(run, asked, count // 2)
+        fewer = LawSystem.of(run, asked, count // 2).looking(near)
         passed = LawPassage(fewer, found.h).passed(run.progress)
         found.stages += passed.stages
-        looked = fewer.without_laws()[0] + passed.looked[0]
-        apart = np.abs(looked - found.looked[0]).max(axis=1, initial=0.0)
+        looked = [own + more for own, more in zip(fewer.without_laws(), passed.looked)]
+        both = np.concatenate([looked[0] - found.looked[0], looked[-1] - beside], axis=1)
+        apart = np.abs(both).max(axis=1, initial=0.0)
         found.truncation = HALVED * apart if passed.error is None else np.full(len(apart), np.inf)
         wrong = found.truncation + found.step_error.max(axis=1, initial=0.0)
         most = allowed(found.looked[0], tolerance, watched)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -69,6 +69,10 @@ class LawSystem:
             [look._replace(output=shifted(look.output, n)) for look in looks],
             found.beyond,
         )
+
+    def looking(self, time: Real) -> LawSystem:
+        """Return the same that looks at other times too, at what the first look sees."""
+        return replace(self, looks=[*self.looks, self.looks[0]._replace(time=time)])
 
     @property
     def points(self) -> slice:
