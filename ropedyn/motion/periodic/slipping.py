@@ -258,12 +258,11 @@ Goes = PhasesGoOn | StepsGoOn
 
 def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: int) -> Settled:
     """Follow the motion until it stays."""
-    periods, share = math.ceil(WINDOW / turn) * turn, (asked.tolerance or TOLERANCE) / 2
+    periods, share, calm = math.ceil(WINDOW / turn) * turn, (asked.tolerance or TOLERANCE) / 2, 0
     decays = Decays(max(_longest(rows, frequency) // periods, 4))
     # changes of what is seen, of all motion and of how periods differ from their mean
     changes: list[list[float]] = [[], [], []]
     before: tuple[Complex, ...] = ()
-    calm = 0
     for k in range(max(LONGEST // periods, LOOKS + 1)):
         found = np.zeros(len(asked.responses), dtype=np.complex128)
         rounded, folded = np.zeros((2, len(found)))

@@ -234,8 +234,10 @@ class Path:
             reached = self.piece[1].p
             if not asked.min() / WAY <= reached <= asked.max() * WAY:
                 break
-            try:
-                self._step()
+            try:  # the next piece
+                self.piece, self.beyond = self.beyond, None
+                if self.piece is None:
+                    self.piece, self.beyond = pieces(self.branch, enough=ROUGHLY * self.branch.step)
             except Stuck:
                 break
             left -= 1
@@ -263,12 +265,6 @@ class Path:
         self.branch.turned(heading)
         self.heading, self.beyond = heading, None
         self.piece = self.branch.place, self.branch.place
-
-    def _step(self) -> None:
-        """Go on to the next piece."""
-        self.piece, self.beyond = self.beyond, None
-        if self.piece is None:
-            self.piece, self.beyond = pieces(self.branch, enough=ROUGHLY * self.branch.step)
 
     def _crossing(self, omega: float) -> Real | None:
         assert self.piece is not None

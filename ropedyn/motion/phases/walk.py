@@ -160,15 +160,12 @@ class PhaseWalk:
         met = [int(c.side * u[k] > c.gap) for k, c in enumerate(laws.contacts)]
         return (*met, *(0 for _ in laws.frictions))
 
-    def _phase(self, mode: tuple[int, ...]) -> Phase:
-        if mode not in self.phases:
-            self.phases[mode] = Phase.of(self.system, mode, self.off)
-        return self.phases[mode]
-
     def _enter(
         self, now: Instant, mode: tuple[int, ...], forcing: Forcing, ahead: float
     ) -> tuple[Phase, UnderDrives]:
-        phase = self._phase(mode)
+        if mode not in self.phases:
+            self.phases[mode] = Phase.of(self.system, mode, self.off)
+        phase = self.phases[mode]
         m = phase.matrices
         x = np.concatenate([m.E.T @ (now.q - m.b @ now.hold), m.E.T @ now.v, now.e])
         fixed = np.concatenate([[1.0], now.hold])

@@ -40,7 +40,7 @@ from .passage import LawPassage, Runs, reach
 from .stretching import StretchedPassage
 from .system import LawQuestion, LawSystem, OutputTimes
 
-MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
+MODES, MOST_MODES = 64, 1024  # Of continuous spans and long chains, at first and at most.
 HALVED = 2.5  # A run is off by so many times its distance to one with half: errors fall as 1/modes.
 NEAR = 2.0  # Radians of the first mode left out in which a front passes, halfway the same in both.
 MOST_STEPS = 2_000_000  # A run takes so many steps at most,
