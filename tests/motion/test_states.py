@@ -163,6 +163,28 @@ def test_which_of_close_modes_is_which_is_as_wrong_as_is_said(heavy):
     assert states(plain, ("z",), points, points, modes=20).wrong.max() < 1e-11
 
 
+@pytest.mark.parametrize(
+    "law",
+    [
+        rd.Stop(0.5, 1e4, gap=1.0),
+        rd.NodeForce(0.5, lambda t, u, v: -1e4 * u**3),
+        rd.Dashpot(0.5, 1.0, exponent=0.0),
+    ],
+    ids=["stop", "smooth", "friction"],
+)
+def test_modes_without_a_ratio_are_not_left_out_beside_laws(law):
+    """They were, without a word: 8 % off, 2e-11 said."""
+    damping = rd.ModalDamping([0.02] * 4)
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping, parts=[law])
+    model = scene.compile(elements=20, element="rigid")
+    time, refused = (
+        np.linspace(0.0, 0.1, 21),
+        "one for each mode beside laws .*, got 4 for 19 modes",
+    )
+    with pytest.raises(rd.SceneError, match=refused):
+        model.transient(time, drive=("z", 0.3), force=rd.Step(1.0), response=("z", 0.5))
+
+
 def test_equal_modes_keep_their_shapes():
     """Two strings beside a support have modes in pairs: a point of one does not move the other."""
     string = rd.Scene(rd.Rope(2.0, 0.1), tension=100.0, parts=[rd.Support(1.0)])
