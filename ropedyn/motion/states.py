@@ -221,10 +221,8 @@ def states(
     if having(model.scene.dampings, "ratio"):
         ratio = known_ratios(model, component, eigenvalue)
         if len(ratio) < len(eigenvalue):
-            raise SceneError(
-                "damping ratio must be one number or one for each mode beside laws of points, got "
-                f"{len(ratio)} for {len(eigenvalue)} modes"
-            )
+            got = f"{len(ratio)} for {len(eigenvalue)}"
+            raise SceneError(f"damping ratio must be one number or one for each mode, got {got}")
     circles = contour.on_a_line(eigenvalue, error, beyond**2)
     asked = UndampedResponses(model, component, list(inputs), list(outputs))
     own, push, seen, rest = _parted_points(asked, eigenvalue, circles, beyond)

@@ -179,7 +179,7 @@ def test_modes_without_a_ratio_are_not_left_out_beside_laws(law):
     model = scene.compile(elements=20, element="rigid")
     time, refused = (
         np.linspace(0.0, 0.1, 21),
-        "one for each mode beside laws .*, got 4 for 19 modes",
+        "one for each mode, got 4 for 19",
     )
     with pytest.raises(rd.SceneError, match=refused):
         model.transient(time, drive=("z", 0.3), force=rd.Step(1.0), response=("z", 0.5))
