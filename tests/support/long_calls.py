@@ -108,7 +108,10 @@ def moved(model, method, force, time=TIME, **options):
 PEAKS = rd.Peaks([25.0, 50.1, 75.3, 100.9], std=0.1)
 SWEPT = np.sin(TIME**2)
 CALLS = {
-    "modes": (lambda: uneven(100_000, element="rigid"), lambda m: m.modes(300)),
+    "modes": (
+        lambda: uneven(100_000, element="rigid"),
+        lambda m: again(lambda: m.modes(300)),
+    ),
     "modes of continuous spans": (uneven, lambda m: m.modes(4000)),
     "modes by lapack": (
         lambda: HELD.compile(elements=2000, element="rigid"),
