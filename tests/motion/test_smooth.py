@@ -126,7 +126,7 @@ def test_a_blow_at_an_instant_that_modes_do_not_resolve_is_refused():
     law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -1e6 * u**3)
     model = rd.Scene(ROPE, tension=TENSION, damping=damping, parts=[law]).compile()
     blow = rd.Impulse(0.01, time=0.0501)
-    with pytest.raises(rd.SolveError, match="needs more than 1024 modes: with these the error is"):
+    with pytest.raises(rd.SolveError, match=r"needs more than .* modes: with these the error is"):
         model.transient(np.linspace(0.0, 0.3, 301), drive=MIDDLE, force=blow)
 
 
@@ -151,7 +151,7 @@ def test_a_front_that_passes_at_a_sample_is_seen_beside_it():
     asked = {"drive": ("z", 0.25), "force": rd.Step(1.0), "quantity": "velocity", "tolerance": 0.05}
     back = LENGTH / math.sqrt(TENSION / DENSITY)  # [s] to the other end
     time = back * np.linspace(0.0, 2.0, 9)
-    with pytest.raises(rd.SolveError, match="needs more than 1024 modes"):
+    with pytest.raises(rd.SolveError, match=r"needs more than .* modes"):
         model.transient(time, response=MIDDLE, **asked)
     time[1:] -= back / 8
     history = model.transient(time, response=MIDDLE, **asked)

@@ -40,7 +40,8 @@ from .passage import LawPassage, Runs, reach
 from .stretching import StretchedPassage
 from .system import LawQuestion, LawSystem, OutputTimes
 
-MODES, MOST_MODES = 64, 1024  # Of continuous spans and long chains, at first and at most.
+MODES, MOST_MODES = 64, 1024  # Of continuous spans and long chains, at first and at most,
+MOST_WORK = 5e7  # if a run with half of them has not had so many times stages: some seconds.
 HALVED = 2.5  # A run is off by so many times its distance to one with half: errors fall as 1/modes.
 NEAR = 2.0  # Radians of the first mode left out in which a front passes, halfway the same in both.
 MOST_STEPS = 2_000_000  # A run takes so many steps at most,
@@ -249,8 +250,7 @@ def component_motion(
 ) -> Agreed:
     """Take more modes until those left out do not show, where there are endless many."""
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
-    first = looks[0].output
-    watched = points[first.start : first.stop]
+    watched = points[looks[0].output]
     if tension_of(run.model, component) is not None or not _is_smooth(run):
         coupled = CoupledSystem.coupled(run, component, points, looks)
         passage = StretchedPassage if coupled.is_plain else CoupledPassage
@@ -280,7 +280,7 @@ def component_motion(
         found.error = passed.error if passed.settles else None
         if found.error is not None or worst <= tolerance:
             return found
-        if count >= MOST_MODES:
+        if count >= MOST_MODES or count * found.stages > MOST_WORK:
             found.error = SolveError(
                 f"tolerance {tolerance:g} needs more than {count} modes: with these the error is "
                 f"{worst:.3g}"
