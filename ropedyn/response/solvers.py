@@ -42,14 +42,7 @@ def _sweep(question: Question) -> tuple[Complex, Bound]:
         value, left = found.value[0], ~found.certain[0]
         if left.any():
             value[..., left] = _walk(question.at(np.flatnonzero(left)))
-    # and the last two roundings
-    return (
-        value,
-        lambda: (
-            _bound(question, bound_of)
-            + 2 * EPS * (np.abs(value) + np.abs(inside_elements(question)))
-        ),
-    )
+    return value, lambda: _bound(question, bound_of) + _last(question, value)
 
 
 def _walk(question: Question) -> Complex:
@@ -80,6 +73,11 @@ def _between(question: Question) -> tuple[Complex, Real, Real]:
     omega = angular(nodes, question.decay)
     factor = np.ascontiguousarray(damping.factors(question.model.scene.dampings, omega).T)
     return factor, _core.sweep_between(question.walked[0], factor), weight
+
+
+def _last(question: Question, value: Complex) -> Real:
+    """Return what the last two roundings of a response may be."""
+    return 2 * EPS * (np.abs(value) + np.abs(inside_elements(question)))
 
 
 def _assembled(question: Question, error: Real) -> Bound:

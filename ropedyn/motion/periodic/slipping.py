@@ -172,10 +172,8 @@ class StepsGoOn:
         self.system, self.mine, self.push = system, mine, push
         self.sigma = system.modes.sigma
         self.state = np.zeros((2, len(system.modes.sigma)))  # all of the motion
-        self.count, self.late = (
-            COUNTS[0],
-            0.0,
-        )  # steps of a period, which begins so much of one later
+        self.count = COUNTS[0]  # steps of a period,
+        self.late = 0.0  # which begins so much of one later
 
     def disturb(self, speed: Real) -> None:
         """Let the modes move faster by these, (k,)."""
@@ -294,8 +292,9 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
         goes = ahead / max(moves[-LOOKS:]) if ahead > 0 else 0.0
         asks, least = share * np.abs(found).max(), rounded.max()
         left = max(_left(watched, max(ALIKE * asks, least)), goes * max(watched[-LOOKS:]))
-        calm += left <= max(asks, least)
-        if calm > LOOKS and left <= max(asks, least):
+        is_calm = left <= max(asks, least)
+        calm += is_calm
+        if is_calm and calm > LOOKS:
             error = np.where(found == 0, 0.0, np.maximum(left, rounded) + folded)
             return Settled(found, error, bool(apart <= most))
     change = changes[1][-1] / np.abs(motion).max()
