@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..base.array import Complex, Real
+from ..base.chebyshev import fitted
 from ..base.errors import SceneError, SolveError
 from ..base.threads import Errands
 from ..chain.chain import Chain
@@ -26,6 +27,9 @@ from .question import Bound, Question, angular
 from .rounding import EPS, bound_of, bound_of_structures
 
 NODES = 40  # Of a band: pieces end below 0.76 of their resonance, the error falls by 2.9 with each.
+SAME = 1e-12  # Factors that differ by more of their largest are those of other rates.
+LATE, TOLD = slice(28, 32), 1e-12
+"""These coefficients of pieces are below this of the largest: those left out are rounding."""
 LANES = 16  # Frequencies that the sweep solves side by side.
 SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 16
 """Steps times frequencies of one call of the core: a look for Ctrl-C some times a second."""
@@ -58,21 +62,38 @@ def _walk(question: Question) -> Complex:
         return _unassembled(question, partial(_core.sweep, chain), steps, SWEEP_SLICE)[0]
     shape = len(question.drives), len(question.responses), len(question.frequency)
     value = np.empty(shape, dtype=np.complex128)
-    for lines in bands(question.frequency):
+    left = list(bands(question.frequency))
+    while left:
+        lines = left.pop()
         band = question.at(lines)
-        known = _between(band) if is_many(band.frequency) else ()
+        known = _between(band)
+        if known is None:
+            left += np.array_split(lines, 2)
+            continue
         value[..., lines] = _unassembled(
             band, partial(_core.sweep, chain), steps, SWEEP_SLICE, known=known
         )[0]
     return value
 
 
-def _between(question: Question) -> tuple[Complex, Real, Real]:
-    """Return nodes of increasing frequencies, what their pieces are, and their weights."""
+def _between(question: Question) -> Known | None:
+    """Return nodes of increasing frequencies, what their pieces are, and their weights.
+
+    Nothing where each is sooner solved by itself, and None where so many nodes do not tell them.
+    """
+    if not is_many(question.frequency):
+        return ()
     nodes, weight = between(question.frequency, NODES)
     omega = angular(nodes, question.decay)
     factor = np.ascontiguousarray(damping.factors(question.model.scene.dampings, omega).T)
-    return factor, _core.sweep_between(question.walked[0], factor), weight
+    asked = question.factor
+    if (np.abs(factor @ weight.T - asked) > SAME * np.abs(asked).max(axis=1, keepdims=True)).any():
+        return ()  # rates that are no frequencies
+    pieces = _core.sweep_between(question.walked[0], factor)
+    size = np.abs(pieces.reshape(-1, 2 * NODES)).max(axis=1)
+    late = fitted(NODES)[LATE] @ pieces.reshape(-1, NODES).T
+    late = np.abs(late).max(axis=0).reshape(-1, 2).max(axis=1)
+    return (factor, pieces, weight) if (late <= TOLD * size).all() else None
 
 
 def _last(question: Question, value: Complex) -> Real:

@@ -96,9 +96,12 @@ class Transfer:
         """Return the factors of the parts of a model, and what they make responses."""
         factor = np.ascontiguousarray(damping.factors(self.model.scene.dampings, -1j * s).T)
         asked = tip.spread(self.model, self.responses)
-        hertz = np.abs(s) / (2 * np.pi)
-        every = self.model.coordinates
-        whole = Question(self.model, every, hertz, factor, list(self.drives), asked, self.workers)
+        on_line = bool(len(s)) and bool((s.real == s.real[0]).all() and (s.imag >= 0).all())
+        hertz, decay = (s.imag, float(s.real[0])) if on_line else (np.abs(s), 0.0)
+        every, drives = self.model.coordinates, list(self.drives)
+        whole = Question(
+            self.model, every, hertz / (2 * np.pi), factor, drives, asked, self.workers, decay
+        )
         solve = partial(line_by_line, solver=moves_ends(SOLVERS["sweep"]))
         return factor, by_components(whole, solve)
 
