@@ -26,6 +26,9 @@ RATES = STEP ** np.arange(-100.0, 300.0)
 HIGHEST = 1e100
 """Eigenvalues are counted up to this [rad^2/s^2], so that their products do not overflow."""
 
+TIE = 1e-9
+"""Eigenvalues of two components that differ by less of themselves come in the order of these."""
+
 
 @dataclass(frozen=True, eq=False)
 class ComponentModes:
@@ -105,12 +108,16 @@ def _count(chain: Chain, limit: float) -> int:
 def merged(
     found: Sequence[ComponentModes], number: int | None, which: Index | None = None
 ) -> tuple[Real, Real, Index]:
-    """Return eigenvalues and errors of all components, and their order: by size, or as before."""
+    """Return eigenvalues and errors of all components, and their order: by size, or as before.
+
+    Those that are one come in the order of components.
+    """
     eigenvalue = np.concatenate([part.eigenvalue for part in found])
     error = np.concatenate([part.error for part in found])
     # what rounding cannot tell from 0 is rigid-body motion
     eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
-    order = np.argsort(eigenvalue, kind="stable")
+    own = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])
+    order = np.argsort(eigenvalue + TIE * own * np.abs(eigenvalue), kind="stable")
     if which is not None:  # the components that modes have had, however close they are
         order = _in_turn([len(part.eigenvalue) for part in found], which, order)
     order = order[:number]

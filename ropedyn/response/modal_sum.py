@@ -24,7 +24,7 @@ from ..base.errors import SceneError, SolveError
 from ..chain.compiled import Compiled
 from ..chain.port import Point, is_force
 from ..chain.tip import is_tip
-from ..eigen.spectrum import HIGHEST, count_component, numbers_below, spectrum
+from ..eigen.spectrum import HIGHEST, TIE, count_component, numbers_below, spectrum
 from ..scene import damping
 from .moved_end import refuse_moved_ends
 from .question import Bound, Question, Solver
@@ -214,10 +214,11 @@ def numbered_ratios(
 ) -> tuple[Index, Real]:
     """Return the numbers of a component's modes among those of all, from 0, and their ratios."""
     number = np.arange(len(eigenvalue))
-    for other in model.components:
+    own = model.components.index(component)
+    for k, other in enumerate(model.components):
         if other != component:
-            below = numbers_below(model.chain.only(other), eigenvalue)
-            number = number + below.astype(np.intp)
+            limit = eigenvalue + TIE * (own - k) * np.abs(eigenvalue)
+            number = number + numbers_below(model.chain.only(other), limit).astype(np.intp)
     every = damping.ratios(model.scene.dampings, int(number.max(initial=-1)) + 1)
     return number, every[number]
 

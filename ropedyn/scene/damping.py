@@ -204,6 +204,7 @@ class ModalDamping(Description):
     """A damping ratio for each mode of the undamped model, in the order of `Model.modes`.
 
     A frequency response is the sum over modes with the static one of all others, see `Model.frf`.
+    Modes of two planes that have one frequency come in the order of `Model.coordinates`.
 
     Parameters
     ----------

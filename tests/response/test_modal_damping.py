@@ -135,6 +135,21 @@ def test_ratios_count_the_modes_of_all_components():
     assert abs(frf.value[0, 0] / wrong.value[0, 0] - 1) > 0.1
 
 
+@pytest.mark.parametrize("elements", [2, 6, None])
+def test_ratios_of_two_planes_with_equal_modes_come_in_the_order_of_coordinates(elements):
+    # each plane had that of the other too: which is below which was a toss of two counts
+    ratio = (0.02, 0.1) * (elements - 1 if elements else 200)
+    scene = rd.Scene(STRING, tension=T)
+    both = scene.replace(planes="both", damping=rd.ModalDamping(ratio)).compile(elements=elements)
+    assert both.coordinates == ("y", "z")
+    f = both.modes(2).frequency[:1]
+    for c, zeta in (("y", 0.02), ("z", 0.1)):
+        one = scene.replace(damping=rd.ModalDamping(zeta)).compile(elements=elements)
+        alone = one.frf(f, drive=("z", 0.5))
+        found = both.frf(f, drive=(c, 0.5))
+        np.testing.assert_allclose(found.value, alone.value, rtol=1e-10)
+
+
 def test_equal_modes_are_summed_up_together():
     # two spans apart but for a mass that is too heavy to move: pairs of equal frequencies
     parts = [rd.PointMass(0.5, 1e12)]
