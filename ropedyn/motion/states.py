@@ -33,13 +33,12 @@ from ..scene.damping import having
 from ..scene.end import end_of
 from ..scene.parts.part import standing
 from ..signal import contour
-from .undamped import UndampedResponses, losses_of
+from .undamped import Parted, UndampedResponses, losses_of
 
 LARGEST = 200  # All modes of a chain with so many are taken.
 EQUAL = 1e-9  # Eigenvalues that differ by this share are one, of as many shapes.
-ROUND = 1e-11  # What modes leave of this share is rounding.
 FEW = 16  # Nodes whose damping is not as their mass are points of their own, at most.
-UNMOVED = 1e-20  # Below this share of the largest residue of a point it does not move.
+KNOWN = 1e-13  # Above this share of what points yield rounding leaves digits.
 PROBES = 8  # Modes that lie close together are told apart at so many places
 SEEN = 1e-4  # that see so much of each,
 MIXED = 4 * np.finfo(float).eps  # and which is which to this over the distance between them.
@@ -228,7 +227,7 @@ def states(
     own, push, seen, rest = _parted_points(asked, eigenvalue, circles, beyond)
     left = np.zeros(rest.shape)
     if np.isfinite(beyond):
-        left = asked.bounded(lambda own: _parted(own, eigenvalue, circles, beyond)[1]).T
+        left = asked.bounded(lambda own: own.parted(eigenvalue, circles).rest).T
     omega = np.sqrt(np.maximum(eigenvalue, 0.0))
     gamma, drag = closed.soften.real, closed.drag.real
     sigma = ratio * omega + (drag + gamma * eigenvalue) / 2
@@ -313,8 +312,9 @@ def _parted_points(
     both = asked.drives, asked.responses
     drives, responses = ([*dict.fromkeys([*one, *probes])] for one in both)
     every = dataclasses.replace(asked, drives=drives, responses=responses)
-    residue, rest = _parted(every, eigenvalue, circles, beyond)
-    own, push, seen = _factored(residue, eigenvalue, circles, every)
+    parted = every.parted(eigenvalue, circles)
+    rest = (parted.rest if np.isfinite(beyond) else parted.left).T
+    own, push, seen = _factored(parted, eigenvalue, circles, every)
     i, o = ([one.index(p) for p in given] for one, given in zip((drives, responses), both))
     return own, push[:, i], seen[o], rest[np.ix_(o, i)]
 
@@ -337,38 +337,22 @@ def _probes(model: Compiled, component: tuple[str, ...]) -> list[Point]:
     return [(c, x * float(model.x[-1])) for c in component for x in at]
 
 
-def _parted(
-    asked: UndampedResponses, eigenvalue: Real, circles: contour.Circles, beyond: float
-) -> tuple[Real, Real]:
-    """Return the residues, (inputs, outputs, k), and the rest as (outputs, inputs)."""
-    parted = asked.parted(eigenvalue, circles)
-    rest = parted.rest
-    if not np.isfinite(beyond):  # only rounding is there, but of what has no inertia
-        size = np.abs(parted.whole) + parted.size
-        # where points move that others do not drive, what both have of their own
-        same = [[p == watched for watched in asked.responses] for p in asked.drives]
-        own = size * np.array(same).reshape(size.shape)
-        drive, response = (own.max(axis=axis, initial=0.0) for axis in (1, 0))
-        size = np.maximum(size, np.sqrt(np.multiply.outer(drive, response)))
-        rest = np.where(np.abs(rest) <= ROUND * size, 0.0, rest)
-    return parted.residue, rest.T
-
-
 # --- residues as products -----------------------------------------------------------------------
 
 
 def _factored(
-    residue: Real, eigenvalue: Real, circles: contour.Circles, asked: UndampedResponses
+    parted: Parted, eigenvalue: Real, circles: contour.Circles, asked: UndampedResponses
 ) -> tuple[Index, Real, Real]:
     """Return of each state its mode, its push and how it is seen."""
+    residue = parted.residue
     inputs, outputs, _ = residue.shape
     same = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
     twin = np.array(same, dtype=np.intp)
-    size = _size(residue, twin)
     number: list[int] = []
     found: list[_Product] = []
     for members in circles.members:
         parts, value = residue[:, :, members], eigenvalue[members]
+        size = parted.most / np.abs(parted.soft[members]).max()
         several = _products(parts.sum(axis=2), len(members), size, twin)
         turned = _turned(several, parts @ (value - value.mean()))
         if len(turned) == len(members):
@@ -383,20 +367,6 @@ def _factored(
     push = np.array([one.push for one in found], dtype=np.float64).reshape(len(own), inputs)
     seen = np.array([one.seen for one in found], dtype=np.float64).reshape(len(own), outputs)
     return own, push, seen.T
-
-
-def _size(residue: Real, twin: Index) -> Real:
-    """Return the size of residues, as products of what pushes and what is seen."""
-    most = np.abs(residue).max(axis=2, initial=0.0)
-    i = np.flatnonzero(twin >= 0)
-    own = np.sqrt(most[i, twin[i]])
-    i, own = i[own > 0], own[own > 0]
-    if not len(i):
-        return np.asarray(most)
-    # pairs of points that no mode moves both of are rounding
-    seen = (most[i] / own[:, None]).max(axis=0)
-    push = (most[:, twin[i]] / own).max(axis=1)
-    return np.multiply.outer(push, seen)
 
 
 def _equal(eigenvalue: Real) -> list[Index]:
@@ -427,8 +397,7 @@ def _products(R: Real, most: int, size: Real, twin: Index) -> list[_Product]:
 
 def _largest(R: Real, size: Real, twin: Index, *, alone: bool) -> _Product | None:
     """Return the largest product in the residues of modes."""
-    known = (size > 0) & (np.abs(R) > UNMOVED * size)
-    share = np.divide(np.abs(R), size, out=np.zeros_like(R), where=known)
+    share = np.divide(np.abs(R), size, out=np.zeros_like(R), where=size > 0)
     if not share.any():
         return None
     i, o = np.unravel_index(int(share.argmax()), share.shape)
@@ -440,28 +409,42 @@ def _largest(R: Real, size: Real, twin: Index, *, alone: bool) -> _Product | Non
     scale = np.sqrt(np.abs(R[i, o]))
     push, seen = R[:, o] / (scale * np.sign(R[i, o])), R[i, :] / scale
     if alone or twin[i] == o:
-        _alike(push, seen, twin, size[:, o], size[i])
+        ratio = _ratio(R, size, twin, (push, seen), (i, o))
+        push, seen = push * ratio, seen / ratio
+        _alike(push, seen, twin, size[:, o] * ratio, size[i] / ratio)
     return _Product(push, seen, own[best] if own else 0.0)
 
 
+def _ratio(
+    R: Real, size: Real, twin: Index, told: tuple[Real, Real], at: tuple[np.intp, np.intp]
+) -> float:
+    """Return what makes points move as they are pushed, as a factor of push and divisor of seen."""
+    i = np.flatnonzero((twin >= 0) & (size[:, at[1]] > 0))
+    i = i[size[i, twin[i]] > 0]
+    if not len(i):
+        return 1.0
+    push, seen = told
+    o = twin[i]
+    share = np.abs(R[i, o]) / size[i, o]
+    k = int(share.argmax())
+    if share[k] > KNOWN:
+        return float(np.sqrt(np.abs(seen[o[k]] / push[i[k]])))
+    # none of them: what is moved moves as far as any mode can, and these no more than is not seen
+    most = np.sqrt(KNOWN * size[i, o]) / np.maximum(np.abs(push[i]), np.finfo(float).tiny)
+    ratio = np.sqrt(np.abs(R[at] * size[i[k], o[k]])) / size[i[k], at[1]]
+    return float(min(ratio, most.min()))
+
+
 def _alike(push: Real, seen: Real, twin: Index, off: Real, away: Real) -> None:
-    """Make what is pushed and watched move by what it is pushed with, to the last digit.
+    """Make points move by what they are pushed with, to the last digit.
 
     Of both, what is wrong by a smaller part of `off` and `away` counts more.
     """
     i = np.flatnonzero(twin >= 0)
     o = twin[i]
-    moved = push[i] * seen[o]
-    if moved.max(initial=0.0) > 0:
-        best = int(np.argmax(moved))
-        ratio = np.sqrt(seen[o[best]] / push[i[best]])
-        push *= ratio
-        seen /= ratio
-        a, b = (off[i] * ratio) ** 2, (away[o] / ratio) ** 2
-        half = np.full(len(i), 0.5)
-        push[i] = seen[o] = seen[o] + (push[i] - seen[o]) * np.divide(
-            b, a + b, out=half, where=a + b > 0
-        )
+    a, b = off[i] ** 2, away[o] ** 2
+    share = np.divide(b, a + b, out=np.full(len(i), 0.5), where=a + b > 0)
+    push[i] = seen[o] = seen[o] + (push[i] - seen[o]) * share
 
 
 def _turned(whole: list[_Product], moment: Real) -> list[_Product]:

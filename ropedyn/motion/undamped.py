@@ -11,7 +11,7 @@ import numpy as np
 from ..base.array import Complex, Real
 from ..chain import tip
 from ..chain.compiled import Compiled
-from ..chain.port import Point, is_force
+from ..chain.port import Point, is_force, moving
 from ..response.modal_sum import shift_of, undamped_factors
 from ..response.moved_end import is_end, moves_ends
 from ..response.question import Question
@@ -21,6 +21,9 @@ from ..scene.parts.broken_wire import BrokenWire
 from ..scene.parts.part import standing
 from ..signal import contour
 
+SOME = 64  # Points are pushed side by side.
+ROUND = 1e-11  # What all modes leave is rounding below this share of what there is.
+
 
 class Parted(NamedTuple):
     """Responses at z = -s^2 = -shift, and the parts that modes have in them."""
@@ -28,6 +31,7 @@ class Parted(NamedTuple):
     residue: Real  # (drives, responses, k)
     whole: Real  # (drives, responses)
     soft: Real  # (k,) of each residue, 1/(eigenvalue + shift)
+    most: Real  # (drives, responses) of the same by what each yields by itself
 
     @property
     def rest(self) -> Real:
@@ -38,6 +42,12 @@ class Parted(NamedTuple):
     def size(self) -> Real:
         """What modes are without their signs."""
         return np.asarray(np.abs(self.residue) @ np.abs(self.soft))
+
+    @property
+    def left(self) -> Real:
+        """What is left by all modes: of points that both have no inertia."""
+        size = np.maximum(np.abs(self.whole) + self.size, self.most)
+        return np.where(np.abs(self.rest) > ROUND * size, self.rest, 0.0)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -70,19 +80,57 @@ class UndampedResponses:
         if len(eigenvalue):
             residue = -contour.residues(self.at, eigenvalue, circles)
         shift = shift_of(eigenvalue)
-        whole = self.at(np.array([-shift], dtype=np.complex128))[..., 0].real
-        return Parted(residue, whole, 1 / (eigenvalue + shift))
+        whole, soft = self._at_rest(shift), 1 / (eigenvalue + shift)
+        there = np.maximum(np.abs(whole), np.abs(residue * soft).max(axis=2, initial=0.0))
+        return Parted(residue, whole, soft, self._most(there, self._yields(shift)))
+
+    def _at_rest(self, shift: float) -> Real:
+        return self.at(np.array([-shift], dtype=np.complex128))[..., 0].real
+
+    def _yields(self, shift: float) -> dict[Any, float]:
+        """Return the root of what each point yields where it is pushed itself."""
+        points = [p for p in dict.fromkeys([*self.drives, *self.responses]) if _is_plain(p)]
+        own: dict[Any, float] = {}
+        for k in range(0, len(points), SOME):
+            some = points[k : k + SOME]
+            still = dataclasses.replace(self, drives=some, responses=some)._at_rest(shift)
+            own |= zip(some, np.sqrt(np.abs(np.diag(still))).tolist())
+        return own
+
+    def _most(self, there: Real, own: dict[Any, float]) -> Real:
+        """Return the products of what drives and responses yield by themselves."""
+        softest: dict[str, float] = {}
+        for (coordinate, _), one in own.items():
+            softest[coordinate] = max(softest.get(coordinate, 0.0), one)
+        sizes = [np.array([own.get(p, 0.0) for p in x]) for x in (self.drives, self.responses)]
+        found = []
+        for some, size, other, by in (
+            (self.drives, sizes[0], sizes[1], there),
+            (self.responses, sizes[1], sizes[0], there.T),
+        ):
+            # what is no point is as large as points make it: a force goes somewhere
+            far = np.divide(by, other, out=np.zeros_like(by), where=other > 0)
+            stiff = [softest.get(moving(p), 0.0) for p in some]
+            floor = np.divide(1.0, stiff, out=np.zeros(len(stiff)), where=np.array(stiff) > 0)
+            most = np.maximum(far.max(axis=1, initial=0.0), floor)
+            found.append(np.where(size > 0, size, most))
+        product = np.multiply.outer(*found)
+        return np.where(product > 0, product, there)
 
     def bounded(self, left: Callable[[Self], Real]) -> Real:
         """Bound what is left out, (drives, responses), as an inner product; see `own`."""
         # there is no bound of internal forces, tips and motion of ends
         own: dict[Any, float] = {}
         for point in dict.fromkeys([*self.drives, *self.responses]):
-            plain = not (is_end(point) or is_force(point) or tip.is_tip(point))
+            plain = _is_plain(point)
             own[point] = float(np.abs(left(self.own(point))[0, 0])) if plain else np.inf
         d, r = ([own[point] for point in some] for some in (self.drives, self.responses))
         with np.errstate(invalid="ignore"):
             return np.nan_to_num(np.sqrt(np.multiply.outer(d, r)), nan=np.inf, posinf=np.inf)
+
+
+def _is_plain(point: Any) -> bool:
+    return not (is_end(point) or is_force(point) or tip.is_tip(point))
 
 
 def losses_of(model: Compiled) -> list[str]:

@@ -186,7 +186,8 @@ def _closed(
             "response must not be an internal force where an end is moved and stiffness is damped: "
             "a jump of the end would take an infinite force"
         )
-    a, rest = _apart(asked, eigenvalue, circles)
+    parted = asked.parted(eigenvalue, circles)
+    a, rest = parted.residue, parted.rest if np.isfinite(beyond) else parted.left
     b = np.where(power[:, :, None] == 1, soften, 0.0) * a
     a *= np.where(power[:, :, None] == 0, 1.0, stiff)
     p, r = np.zeros(0), np.zeros((*rest.shape, 0))
@@ -210,11 +211,3 @@ def _left(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> Real:
     """Bound what is left of the response at one place, rounding included."""
     parted = asked.parted(eigenvalue, circles)
     return np.asarray(np.abs(parted.rest) + ROUND * parted.size)
-
-
-def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[Real, Real]:
-    """Return residues, (drives, responses, k), and what is left of the response at one place."""
-    parted = asked.parted(eigenvalue, circles)
-    # of all modes only rounding is left, which what is damped fast would make large
-    rest = np.where(np.abs(parted.rest) > ROUND * parted.size, parted.rest, 0.0)
-    return parted.residue, rest
