@@ -9,7 +9,7 @@ import numpy as np
 from ...base.array import Complex, Real
 
 DOUBLE = 1e-10  # Equal poles are split by this share of their modulus squared.
-SHARE = 0.25  # Squares of coupled modes are known to this times a part of the largest.
+SHARE = 0.25  # Stiffness of coupled modes is known to this times a part of its largest.
 STILL = 1e-5  # A pole that is 0 turns by this angle over the record.
 
 
@@ -30,11 +30,13 @@ def poles_of(A: Real, modes: int, span: float, *, off: float = 0.0) -> Poles:
         damping = np.diag(C)
         size = 64 * np.finfo(float).eps * np.abs(damping).max(initial=0.0)
         if np.ptp(damping) <= size and (np.abs(_off(C)) <= size).all():
-            square, W = np.linalg.eigh((S + S.T) / 2)
+            square, W = np.linalg.eigh((S + S.T) / 2 + _astray(S, off))
             # of modes that are alike one more than the other, so that they part too
-            each = off * (1 + 0.5 * (-1.0) ** np.arange(modes))
-            square = (1 + each) * square + SHARE * each * np.abs(square).max(initial=0.0)
+            square *= 1 + off * (1 + 0.5 * (-1.0) ** np.arange(modes))
             return _oscillators(np.full(modes, damping.mean() / 2), square, W, span)
+    if off:
+        A = A.copy()
+        A[modes : 2 * modes, :modes] -= _astray(S[:modes], off)
     rate, right = np.linalg.eig(A)
     left = np.linalg.inv(right)
     kept = rate.imag >= 0
@@ -45,6 +47,13 @@ def poles_of(A: Real, modes: int, span: float, *, off: float = 0.0) -> Poles:
         (right[:, kept] * weight).astype(np.complex128),
         left[kept].astype(np.complex128),
     )
+
+
+def _astray(S: Real, off: float) -> Real:
+    """Return what rounding may add to a stiffness, which turns shapes and parts modes."""
+    noise = np.random.default_rng(0).standard_normal(S.shape)
+    most = np.abs(S).max(initial=0.0)
+    return np.asarray(SHARE * off * most * (noise + noise.T) / np.sqrt(4 * len(S) or 1))
 
 
 def _off(matrix: Real) -> Real:
