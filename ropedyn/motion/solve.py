@@ -9,6 +9,7 @@ from ..base.check import NEAR
 from ..base.errors import SceneError, SolveError
 from .history import History
 from .linear import resists_beside_ratios, solve_linear
+from .modal.convolution import refuse_infinite
 from .phases.components import why_not_events
 from .phases.events import solve_events
 from .request import EVENTS, Run
@@ -21,7 +22,7 @@ def _by_events(run: Run) -> History:
     try:
         return solve_events(run, whole=True)
     except SolveError as refusal:
-        with suppress(SolveError):
+        with suppress(SceneError, SolveError):
             return integrate(run.but(partial=False))
         if run.partial and refusal.history is not None:
             return cast("History", refusal.history)
@@ -44,6 +45,12 @@ def follow_motion(run: Run) -> History:
     """Return the motion by the method that was asked for; see `Model.transient`."""
     if not run.is_linear:
         _refuse_last_blow(run)
+    history = _followed(run)
+    refuse_infinite(history.value, history.time)
+    return history
+
+
+def _followed(run: Run) -> History:
     if run.method == EVENTS:
         return solve_events(run)
     if run.is_linear and not resists_beside_ratios(run):

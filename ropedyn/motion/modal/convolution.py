@@ -45,7 +45,7 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
             value = straight_lines(modes, rest, force, time, order)
         else:
             value = _sines(modes, rest, pieces(force, float(time[0])), time, order)
-    return _checked(value, time)
+    return refuse_infinite(value, time)
 
 
 def release(expansion: Expansion, drive: int, load: float, time: Real, order: int) -> Real:
@@ -59,7 +59,7 @@ def release(expansion: Expansion, drive: int, load: float, time: Real, order: in
         state, span = (rest, np.zeros_like(rest)), float(time[-1] - time[0])
         terms = _motion(modes, SinePiece(time[0]), state, span, order)
         value = evaluate(terms.rate, _seen(modes, terms), time - time[0])
-    return _checked(value, time)
+    return refuse_infinite(value, time)
 
 
 def _oscillators(expansion: Expansion, drive: int) -> Oscillators:
@@ -73,7 +73,7 @@ def _oscillators(expansion: Expansion, drive: int) -> Oscillators:
     )
 
 
-def _checked(value: Real, time: Real) -> Real:
+def refuse_infinite(value: Real, time: Real) -> Real:
     """Refuse what has left the numbers."""
     bad = ~(np.abs(value) <= LARGEST).all(axis=0)
     if bad.any():

@@ -52,12 +52,12 @@ class Course(NamedTuple):
 
     def at(self, time: Real) -> Real:
         """Return the outputs at times [s], shape (outputs, t)."""
-        with np.errstate(under="ignore"):
+        with np.errstate(under="ignore", over="ignore", invalid="ignore"):
             power = np.exp(np.multiply.outer(self.rate, time))
-        value = self.c.real @ power.real - self.c.imag @ power.imag
-        n = self.d.shape[1]
-        if n:
-            value += time * (self.d.real @ power[:n].real - self.d.imag @ power[:n].imag)
+            value = self.c.real @ power.real - self.c.imag @ power.imag
+            n = self.d.shape[1]
+            if n:
+                value += time * (self.d.real @ power[:n].real - self.d.imag @ power[:n].imag)
         value += self.a @ np.vander(time, self.a.shape[1], increasing=True).T
         return np.asarray(value)
 

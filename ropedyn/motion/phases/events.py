@@ -15,6 +15,7 @@ from ...base.errors import SceneError, SolveError
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ..history import History, ended_by
+from ..modal.convolution import refuse_infinite
 from ..moved import against_spans
 from ..request import TOLERANCE, Run
 from .components import Look, moving_components, rest, why_not_events
@@ -82,7 +83,8 @@ def _record(
     course = visit.outputs.some(rows)
     for _ in range(look.order):
         course = course.derivative()
-    value[which, i:j] = course.at(look.time[i:j] - visit.start)
+    moved = course.at(look.time[i:j] - visit.start)
+    value[which, i:j] = refuse_infinite(moved, look.time[i:j])
 
 
 # --- how far it is right ------------------------------------------------------------------------
@@ -179,7 +181,7 @@ def _allowed(found: Followed, tolerance: float) -> Real:
 
 def _sure_until(run: Run, found: Followed, error: Real) -> float:
     """Return the last time at which the error of every response is within the tolerance."""
-    wrong = (error > _allowed(found, run.tolerance or TOLERANCE)).any(axis=0)
+    wrong = ~(error <= _allowed(found, run.tolerance or TOLERANCE)).all(axis=0)
     if not wrong.any():
         return math.inf
     return float(run.time[max(int(wrong.argmax()) - 1, 0)])
