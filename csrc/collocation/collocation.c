@@ -38,6 +38,7 @@ void rd_collocation_work(const struct rd_collocation *step, struct rd_workspace 
         .slope = rd_take(workspace, 2 * all, sizeof(double)),
         .gap = rd_take(workspace, all, sizeof(double)),
         .tried = rd_take(workspace, all + n, sizeof(double)), /* and the scales of the laws */
+        .further = rd_take(workspace, all, sizeof(double)),
         .jacobian = rd_take(workspace, all * all, sizeof(double)),
         .call = rd_take(workspace, 12 * s, sizeof(double)),
         .pivot = rd_take(workspace, all, sizeof(int32_t)),
@@ -166,22 +167,54 @@ static bool factor(const struct solver *solver)
            0;
 }
 
-/* R + share change, halved until the gap is smaller; false: a law failed */
+/* change = what closes the gap by the slopes there are */
+static void close(const struct solver *solver, double *change)
+{
+    const struct rd_collocation_work *work = solver->work;
+    const int32_t all = (int32_t)(solver->step->stages * solver->step->laws);
+    memcpy(change, work->gap, (size_t)all * sizeof *change);
+    LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', all, 1, work->jacobian, all, work->pivot, change,
+                        all);
+}
+
+/* how far forces move the points, beside how far they have moved */
+static double moved_by(const struct solver *solver, const double *force)
+{
+    const size_t n = solver->step->laws, all = solver->step->stages * n;
+    double most = 0;
+    for (size_t i = 0; i < 2 * all; i++) {
+        double sum = 0;
+        for (size_t j = 0; j < all; j++)
+            sum += solver->step->own[i * all + j] * force[j];
+        const double size = fmax(solver->size[(i / n % 2) * n + i % n], NOTHING);
+        most = fmax(most, fabs(sum) / size);
+    }
+    return most;
+}
+
+/* whether points are nearer where a gap is larger: a force that is nothing beside others may
+   become many times as large when these move its point (natural monotonicity: Deuflhard 2004) */
+static bool nearer(const struct solver *solver)
+{
+    close(solver, solver->work->further);
+    return moved_by(solver, solver->work->further) < moved_by(solver, solver->work->tried) / 2;
+}
+
+/* R + share change, halved until the gap is smaller or points are nearer; false: a law failed */
 static bool advance(const struct solver *solver, double *R, double *worst)
 {
     const size_t all = solver->step->stages * solver->step->laws;
     const struct rd_collocation_work *work = solver->work;
     const double before = *worst;
-    memcpy(work->tried, work->gap, all * sizeof *R);
-    LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', (int32_t)all, 1, work->jacobian, (int32_t)all,
-                        work->pivot, work->tried, (int32_t)all);
+    close(solver, work->tried);
     for (double share = 1;; share /= 2) {
         for (size_t i = 0; i < all; i++)
             R[i] += (share == 1 ? 1 : -share) * work->tried[i];
         if (!say(solver, R, false))
             return false;
         *worst = worst_of(solver);
-        if (*worst < before || share <= SHARE || before <= LEAST)
+        if (*worst < before || share <= SHARE || before <= LEAST ||
+            (isfinite(*worst) && nearer(solver)))
             return true;
     }
 }

@@ -59,6 +59,7 @@ struct rd_collocation_work {
     double *slope;    /* (stages, 2, laws) of a law by u and by v      */
     double *gap;      /* (stages, laws)                                */
     double *tried;    /* (stages, laws)                                */
+    double *further;  /* (stages, laws)                                */
     double *jacobian; /* (stages laws)^2                               */
     double *call;     /* (4, 3 stages) time, u, v, force of a law      */
     int32_t *pivot;   /* (stages laws,)                                */

@@ -439,3 +439,34 @@ def test_errors_of_many_random_scenes_are_within_what_is_said(claim):
     said, relative = worst_of(1933, 200)
     assert (relative <= 1).all()
     claim(said.max())
+
+
+@pytest.mark.parametrize("coefficient", [100.0, 1e-12])
+def test_laws_of_one_point_are_one_law_of_their_sum(coefficient):
+    # the second is nothing where the step begins, and many times that where the first has moved
+    # its point: the gaps of Newton's method grow there, and it was refused
+    def cube(_t, u, _v):
+        return -1.12e12 * u**3
+
+    def both(t, u, v):
+        return cube(t, u, v) - coefficient * np.abs(v) ** 2 * v
+
+    found = [
+        rd.Scene(rd.Rope(1.0, 2.9), tension=1790.0, damping=rd.ModalDamping(0.0087), parts=parts)
+        .compile(elements=6, element="rigid")
+        .transient(
+            np.linspace(0, 0.2, 41),
+            start={("z", 1 / 6): 0.93},
+            response=("z", 0.5),
+            tolerance=1e-4,
+        )
+        for parts in (
+            [rd.NodeForce(0.5, cube), rd.Dashpot(0.5, coefficient, exponent=3.0)],
+            [rd.NodeForce(0.5, both)],
+        )
+    ]
+    two, one = found
+    assert {each.cost.method for each in found} == {"collocation"}
+    assert (np.abs(two.value - one.value) <= two.error + one.error).all()
+    # 2.2e-7 is said
+    assert two.error.max() < 2e-6 * np.abs(two.value).max()
