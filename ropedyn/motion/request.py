@@ -188,9 +188,11 @@ class Kind(NamedTuple):
     transfer: Callable[[Any, tuple[Any, ...], tuple[Point, ...]], TransferFunctions]
 
 
-def _chosen(model: Compiled, method: Any, _modes: Any, _partial: Any) -> tuple[str, bool]:
+def _chosen(model: Compiled, method: Any, modes: Any, _partial: Any) -> tuple[str, bool]:
     """Say whether the model is linear; refuse what tells linear motion where it is not."""
     chosen: str = check.one_of(method, "method", METHODS)
+    if chosen == "line" and modes is not None:
+        raise SceneError(f'modes must be left out where method is "line", got {modes!r}')
     why = why_not_linear(model)
     if method in ("modal", "line") and why:
         raise SceneError(f'method must be "auto" or "events" where {why}, got "{method}"')

@@ -82,8 +82,7 @@ def _shapes(model: Compiled, given: Any, name: str) -> dict[str, Shape]:
 
 def _values(shape: Shape, x: Real, name: str) -> Real:
     """Return a shape at places."""
-    value = np.array([shape(float(at)) for at in x], dtype=np.float64)
-    return check.numbers(value, f"{name} at x", "m, rad, or these per s")
+    return check.numbers([shape(at) for at in x.tolist()], f"{name} at x", "m, rad, or these per s")
 
 
 def _places(model: Compiled, parts: int) -> Real:

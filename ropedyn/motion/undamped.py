@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple, Self
 
@@ -102,19 +103,12 @@ class UndampedResponses:
         softest: dict[str, float] = {}
         for (coordinate, _), one in own.items():
             softest[coordinate] = max(softest.get(coordinate, 0.0), one)
-        sizes = [np.array([own.get(p, 0.0) for p in x]) for x in (self.drives, self.responses)]
-        found = []
-        for some, size, other, by in (
-            (self.drives, sizes[0], sizes[1], there),
-            (self.responses, sizes[1], sizes[0], there.T),
-        ):
-            # what is no point is as large as points make it: a force goes somewhere
-            far = np.divide(by, other, out=np.zeros_like(by), where=other > 0)
-            stiff = [softest.get(moving(p), 0.0) for p in some]
-            floor = np.divide(1.0, stiff, out=np.zeros(len(stiff)), where=np.array(stiff) > 0)
-            most = np.maximum(far.max(axis=1, initial=0.0), floor)
-            found.append(np.where(size > 0, size, most))
-        product = np.multiply.outer(*found)
+        # an internal force and what the motion of an end takes are stiff where points are soft
+        sizes = (
+            [own[p] if p in own else 1 / (softest.get(moving(p)) or math.inf) for p in some]
+            for some in (self.drives, self.responses)
+        )
+        product = np.multiply.outer(*sizes)
         return np.where(product > 0, product, there)
 
     def bounded(self, left: Callable[[Self], Real]) -> Real:
@@ -122,8 +116,9 @@ class UndampedResponses:
         # there is no bound of internal forces, tips and motion of ends
         own: dict[Any, float] = {}
         for point in dict.fromkeys([*self.drives, *self.responses]):
-            plain = _is_plain(point)
-            own[point] = float(np.abs(left(self.own(point))[0, 0])) if plain else np.inf
+            own[point] = np.inf
+            if _is_plain(point):
+                own[point] = float(np.abs(left(self.own(point))[0, 0]))
         d, r = ([own[point] for point in some] for some in (self.drives, self.responses))
         with np.errstate(invalid="ignore"):
             return np.nan_to_num(np.sqrt(np.multiply.outer(d, r)), nan=np.inf, posinf=np.inf)

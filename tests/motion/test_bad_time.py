@@ -152,7 +152,15 @@ row(
     NOT_A_NUMBER,
     NOT_FINITE,
 )
+row(
+    "Model.transient",
+    "start at x",
+    lambda v: run(start=lambda x: v),
+    {"word": "a", "complex": 1j},
+    {"nan": float("nan"), "infinite": float("inf")},
+)
 row("Model.transient", "method", lambda v: run(method=v), NOT_A_WORD, {"later": "newmark"})
+row("Model.transient by the line", "modes", lambda v: run(modes=v, method="line"), {}, {"few": 3})
 row("Model.transient", "modes", lambda v: run(modes=v), without(NOT_A_COUNT, "none"), BAD_COUNT)
 for name, wrong in {
     "tolerance": NEGATIVE | ZERO,

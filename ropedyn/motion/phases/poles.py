@@ -32,7 +32,8 @@ def poles_of(A: Real, modes: int, span: float, *, off: float = 0.0) -> Poles:
         if np.ptp(damping) <= size and (np.abs(_off(C)) <= size).all():
             square, W = np.linalg.eigh((S + S.T) / 2 + _astray(S, off))
             # of modes that are alike one more than the other, so that they part too
-            square *= 1 + off * (1 + 0.5 * (-1.0) ** np.arange(modes))
+            each = off * (1 + 0.5 * (-1.0) ** np.arange(modes))
+            square = (1 + each) * square + SHARE * each * np.abs(square).max(initial=0.0)
             return _oscillators(np.full(modes, damping.mean() / 2), square, W, span)
     if off:
         A = A.copy()
@@ -50,7 +51,7 @@ def poles_of(A: Real, modes: int, span: float, *, off: float = 0.0) -> Poles:
 
 
 def _astray(S: Real, off: float) -> Real:
-    """Return what rounding may add to a stiffness, which turns shapes and parts modes."""
+    """Return what rounding may add to a stiffness, which turns shapes."""
     noise = np.random.default_rng(0).standard_normal(S.shape)
     most = np.abs(S).max(initial=0.0)
     return np.asarray(SHARE * off * most * (noise + noise.T) / np.sqrt(4 * len(S) or 1))
