@@ -70,6 +70,9 @@ def _walk(question: Question) -> Complex:
         if known is None:
             left += np.array_split(lines, 2)
             continue
+        # cut by its own waves
+        chain, _ = band.walked
+        steps = _core.steps(chain, band.fastest)
         value[..., lines] = _unassembled(
             band, partial(_core.sweep, chain), steps, SWEEP_SLICE, known=known
         )[0]
