@@ -310,7 +310,10 @@ def _parted_points(
     # each point once, what is pushed and watched there is one; others tell close modes apart
     probes = _probes(asked.model, asked.component) if (circles.size > 1).any() else []
     both = asked.drives, asked.responses
-    drives, responses = ([*dict.fromkeys([*one, *probes])] for one in both)
+    pushed = [p for p in asked.drives if not is_end(p)]
+    drives, responses = (
+        [*dict.fromkeys([*one, *more])] for one, more in zip(both, (probes, [*pushed, *probes]))
+    )
     every = dataclasses.replace(asked, drives=drives, responses=responses)
     parted = every.parted(eigenvalue, circles)
     rest = (parted.rest if np.isfinite(beyond) else parted.left).T
@@ -344,7 +347,7 @@ def _factored(
     parted: Parted, eigenvalue: Real, circles: contour.Circles, asked: UndampedResponses
 ) -> tuple[Index, Real, Real]:
     """Return of each state its mode, its push and how it is seen."""
-    residue = parted.residue
+    residue, most = parted.residue, parted.yields()
     inputs, outputs, _ = residue.shape
     same = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
     twin = np.array(same, dtype=np.intp)
@@ -352,7 +355,7 @@ def _factored(
     found: list[_Product] = []
     for members in circles.members:
         parts, value = residue[:, :, members], eigenvalue[members]
-        size = parted.most / np.abs(parted.soft[members]).max()
+        size = most / np.abs(parted.soft[members]).max()
         several = _products(parts.sum(axis=2), len(members), size, twin)
         turned = _turned(several, parts @ (value - value.mean()))
         if len(turned) == len(members):
@@ -406,45 +409,35 @@ def _largest(R: Real, size: Real, twin: Index, *, alone: bool) -> _Product | Non
     # of several shapes only these leave what others have as product of push and push
     if own and not alone and own[best] > 1e-8 * share[i, o]:
         i, o = np.intp(best), twin[best]
-    scale = np.sqrt(np.abs(R[i, o]))
-    push, seen = R[:, o] / (scale * np.sign(R[i, o])), R[i, :] / scale
-    if alone or twin[i] == o:
-        ratio = _ratio(R, size, twin, (push, seen), (i, o))
-        push, seen = push * ratio, seen / ratio
-        _alike(push, seen, twin, size[:, o] * ratio, size[i] / ratio)
+    if not alone and twin[i] != o:
+        twin = np.full_like(twin, -1)
+    push, seen = _scaled(R, size, share, twin, (int(i), int(o)))
     return _Product(push, seen, own[best] if own else 0.0)
 
 
-def _ratio(
-    R: Real, size: Real, twin: Index, told: tuple[Real, Real], at: tuple[np.intp, np.intp]
-) -> float:
-    """Return what makes points move as they are pushed, as a factor of push and divisor of seen."""
-    i = np.flatnonzero((twin >= 0) & (size[:, at[1]] > 0))
-    i = i[size[i, twin[i]] > 0]
-    if not len(i):
-        return 1.0
-    push, seen = told
-    o = twin[i]
-    share = np.abs(R[i, o]) / size[i, o]
-    k = int(share.argmax())
-    if share[k] > KNOWN:
-        return float(np.sqrt(np.abs(seen[o[k]] / push[i[k]])))
-    # none of them: what is moved moves as far as any mode can, and these no more than is not seen
-    most = np.sqrt(KNOWN * size[i, o]) / np.maximum(np.abs(push[i]), np.finfo(float).tiny)
-    ratio = np.sqrt(np.abs(R[at] * size[i[k], o[k]])) / size[i[k], at[1]]
-    return float(min(ratio, most.min()))
-
-
-def _alike(push: Real, seen: Real, twin: Index, off: Real, away: Real) -> None:
-    """Make points move by what they are pushed with, to the last digit.
-
-    Of both, what is wrong by a smaller part of `off` and `away` counts more.
-    """
-    i = np.flatnonzero(twin >= 0)
-    o = twin[i]
-    a, b = off[i] ** 2, away[o] ** 2
-    share = np.divide(b, a + b, out=np.full(len(i), 0.5), where=a + b > 0)
-    push[i] = seen[o] = seen[o] + (push[i] - seen[o]) * share
+def _scaled(
+    R: Real, size: Real, share: Real, twin: Index, at: tuple[int, int]
+) -> tuple[Real, Real]:
+    """Return push and seen from a pivot: points move by what they are pushed with."""
+    i, o = at
+    root = np.sqrt(np.abs(R[at]))
+    push, seen = R[:, o] * (np.sign(R[at]) / root), R[i] / root
+    t = np.flatnonzero(twin >= 0)
+    if not len(t):
+        return push, seen
+    w = twin[t]
+    a, b = share[t, o], share[i, w]  # what has the larger share is known better
+    k = int(np.minimum(a, b).argmax())
+    if min(a[k], b[k]) > KNOWN:
+        one, other = push[t[k]], seen[w[k]]
+    else:  # none of them: as far as rounding moves those that move most
+        own = np.sqrt(np.maximum(size[t, w], np.finfo(float).tiny))
+        one, other = (np.max(np.abs(x) / own) for x in (push[t], seen[w]))
+    ratio = np.sqrt(np.abs(other / one)) if one and other else 1.0
+    push, seen = push * ratio, seen / ratio
+    known = np.divide(a**2, a**2 + b**2, out=np.full(len(t), 0.5), where=a + b > 0)
+    push[t] = seen[w] = seen[w] + (push[t] - seen[w]) * known
+    return push, seen
 
 
 def _turned(whole: list[_Product], moment: Real) -> list[_Product]:

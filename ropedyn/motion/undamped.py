@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -32,7 +33,7 @@ class Parted(NamedTuple):
     residue: Real  # (drives, responses, k)
     whole: Real  # (drives, responses)
     soft: Real  # (k,) of each residue, 1/(eigenvalue + shift)
-    most: Real  # (drives, responses) of the same by what each yields by itself
+    yields: Callable[[], Real]  # returns the products of what both yield by themselves
 
     @property
     def rest(self) -> Real:
@@ -47,8 +48,9 @@ class Parted(NamedTuple):
     @property
     def left(self) -> Real:
         """What is left by all modes: of points that both have no inertia."""
-        size = np.maximum(np.abs(self.whole) + self.size, self.most)
-        return np.where(np.abs(self.rest) > ROUND * size, self.rest, 0.0)
+        rest = self.rest
+        rest[np.abs(rest) <= ROUND * (np.abs(self.whole) + self.size)] = 0.0
+        return np.where(np.abs(rest) > ROUND * self.yields(), rest, 0.0) if rest.any() else rest
 
 
 @dataclasses.dataclass(frozen=True)
@@ -82,25 +84,19 @@ class UndampedResponses:
             residue = -contour.residues(self.at, eigenvalue, circles)
         shift = shift_of(eigenvalue)
         whole, soft = self._at_rest(shift), 1 / (eigenvalue + shift)
-        there = np.maximum(np.abs(whole), np.abs(residue * soft).max(axis=2, initial=0.0))
-        return Parted(residue, whole, soft, self._most(there, self._yields(shift)))
+        return Parted(residue, whole, soft, partial(self._yields, shift, np.abs(whole)))
 
     def _at_rest(self, shift: float) -> Real:
         return self.at(np.array([-shift], dtype=np.complex128))[..., 0].real
 
-    def _yields(self, shift: float) -> dict[Any, float]:
-        """Return the root of what each point yields where it is pushed itself."""
+    def _yields(self, shift: float, whole: Real) -> Real:
         points = [p for p in dict.fromkeys([*self.drives, *self.responses]) if _is_plain(p)]
         own: dict[Any, float] = {}
+        softest: dict[str, float] = {}
         for k in range(0, len(points), SOME):
             some = points[k : k + SOME]
             still = dataclasses.replace(self, drives=some, responses=some)._at_rest(shift)
             own |= zip(some, np.sqrt(np.abs(np.diag(still))).tolist())
-        return own
-
-    def _most(self, there: Real, own: dict[Any, float]) -> Real:
-        """Return the products of what drives and responses yield by themselves."""
-        softest: dict[str, float] = {}
         for (coordinate, _), one in own.items():
             softest[coordinate] = max(softest.get(coordinate, 0.0), one)
         # an internal force and what the motion of an end takes are stiff where points are soft
@@ -109,7 +105,7 @@ class UndampedResponses:
             for some in (self.drives, self.responses)
         )
         product = np.multiply.outer(*sizes)
-        return np.where(product > 0, product, there)
+        return np.where(product > 0, product, whole)
 
     def bounded(self, left: Callable[[Self], Real]) -> Real:
         """Bound what is left out, (drives, responses), as an inner product; see `own`."""
