@@ -17,7 +17,8 @@ from .pieces import ForcePiece
 from .poles import Poles, poles_of
 
 AT_ONCE = 64  # Events so close to each other, at most,
-INSTANT = 1e-11  # of the time that is asked for.
+INSTANT = 1e-11  # of the time that is asked for,
+QUICK = 1e-5  # or of a radian of the fastest mode.
 UNMOVED = 1e-12  # A blow that moves a point by less of what modes move it does not.
 SHARE = 1 / 16  # Of products that rounding adds up, beside their sum.
 
@@ -129,7 +130,8 @@ class PhaseWalk:
                 if event is None:
                     break
                 law = self._law(mode, event.which)
-                crowd = 0 if last > INSTANT * self.system.span else crowd + 1
+                soon = QUICK / np.abs(phase.poles.rate).max(initial=QUICK)
+                crowd = 0 if last > max(INSTANT * self.system.span, soon) else crowd + 1
                 if crowd > AT_ONCE:
                     raise _unsettled(time)
                 time, forcing = time + last, _later(forcing, last)
