@@ -7,6 +7,7 @@ from collections.abc import Collection
 import numpy as np
 
 from .. import _core
+from ..base.array import Real
 from ..base.errors import SolveError
 from ..chain.chain import Chain
 from ..chain.compile import compile_scene
@@ -43,7 +44,12 @@ def exceeds(count: int) -> str:
 def _pushes(chain: Chain) -> bool:
     """Whether anything makes the stiffness less."""
     springs = np.diagonal(chain.stiffness, axis1=1, axis2=2)
-    return bool((chain.tension < 0).any() or (springs < 0).any())
+    return bool((chain.tension < _grows(chain)).any() or (springs < 0).any())
+
+
+def _grows(chain: Chain) -> Real | float:
+    """Return how far the tension of elements is from their mean at most [N]."""
+    return 0.0 if chain.rise is None else np.abs(chain.rise) / 2
 
 
 def _exceeded(chain: Chain) -> int:
@@ -51,7 +57,7 @@ def _exceeded(chain: Chain) -> int:
     if not _pushes(chain):
         return 0
     less = chain.undamped._replace(
-        tension=chain.tension - NEAR * np.abs(chain.tension),
+        tension=chain.tension - NEAR * (np.abs(chain.tension) + _grows(chain)),
         stiffness=chain.stiffness - NEAR * np.abs(chain.stiffness),
     )
     return int(_core.count(less, np.zeros(1))[0])

@@ -356,6 +356,21 @@ def test_only_what_a_load_moves_is_counted():
     assert model.static({("alpha", L / 2): 1.0}).critical_loads == 0
 
 
+@pytest.mark.parametrize("tension", [0.0, rd.Tension(200.0, at="end")])
+@pytest.mark.parametrize("elements", [None, 40])
+def test_own_weight_that_pushes_a_part_of_the_rope_exceeds_critical_loads(tension, elements):
+    # the mean of the span pulls: it was answered
+    scene = rd.Scene(
+        rd.Rope(20.0, 2.0, bending_stiffness=1000.0),
+        tension=tension,
+        ends=("pinned", "clamped"),
+        gravity=rd.Gravity(inclination=np.pi / 2, sag=False),
+    )
+    assert (scene.compile().modes(3).eigenvalue < 0).sum() == 1
+    with pytest.raises(rd.SolveError, match="does not stay at rest: 1 critical load is"):
+        scene.compile(elements=elements).static({("z", 6.0): 1.0})
+
+
 def test_loads_that_are_let_go_rest_where_the_rope_stays():
     model = pushed(1.5, 8)
     how = {"method": "line", "response": ("z", L / 2)}
