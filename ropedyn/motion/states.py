@@ -363,9 +363,13 @@ def _factored(
             found += turned
             continue
         for group in _equal(value):
-            several = _products(parts[:, :, group].sum(axis=2), len(group), size, twin)
-            number += members[group[: len(several)]].tolist()
-            found += several
+            left = group.tolist()
+            for one in _products(parts[:, :, group].sum(axis=2), len(group), size, twin):
+                # it is of the mode that has the most of where it moves most
+                share = _share(np.multiply.outer(one.push, one.seen), size)
+                i, o = np.unravel_index(int(share.argmax()), share.shape)
+                number.append(members[left.pop(int(np.abs(parts[i, o, left]).argmax()))])
+                found.append(one)
     own = np.array(number, dtype=np.intp)
     push = np.array([one.push for one in found], dtype=np.float64).reshape(len(own), inputs)
     seen = np.array([one.seen for one in found], dtype=np.float64).reshape(len(own), outputs)
@@ -398,9 +402,13 @@ def _products(R: Real, most: int, size: Real, twin: Index) -> list[_Product]:
     return found
 
 
+def _share(R: Real, size: Real) -> Real:
+    return np.divide(np.abs(R), size, out=np.zeros_like(R), where=size > 0)
+
+
 def _largest(R: Real, size: Real, twin: Index, *, alone: bool) -> _Product | None:
     """Return the largest product in the residues of modes."""
-    share = np.divide(np.abs(R), size, out=np.zeros_like(R), where=size > 0)
+    share = _share(R, size)
     if not share.any():
         return None
     i, o = np.unravel_index(int(share.argmax()), share.shape)
