@@ -269,7 +269,7 @@ def test_motion_that_never_repeats_with_the_drive_is_refused(friction, stiffness
     damping = rd.RayleighDamping(mass=6.0, stiffness=0.0)
     scene = rd.Scene(rd.Rope(1.0, 0.2), tension=100.0, damping=damping, parts=parts)
     model = scene.compile(elements=2, element="rigid")
-    with pytest.raises(rd.SolveError, match="no steady state of its period: after 512 periods"):
+    with pytest.raises(rd.SolveError, match=r"no steady state of its period: after \d+ periods"):
         model.stepped_sine([f], drive=("z", 0.5), amplitude=1.0)
 
 
