@@ -105,6 +105,11 @@ def _count(chain: Chain, limit: float) -> int:
     return int(count)
 
 
+def apart(eigenvalue: Real, places: Index | int) -> Real:
+    """Return eigenvalues moved by so many ties, as components that come later are."""
+    return eigenvalue + TIE * places * np.abs(eigenvalue)
+
+
 def merged(
     found: Sequence[ComponentModes], number: int | None, which: Index | None = None
 ) -> tuple[Real, Real, Index]:
@@ -117,7 +122,7 @@ def merged(
     # what rounding cannot tell from 0 is rigid-body motion
     eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
     own = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])
-    order = np.argsort(eigenvalue + TIE * own * np.abs(eigenvalue), kind="stable")
+    order = np.argsort(apart(eigenvalue, own), kind="stable")
     if which is not None:  # the components that modes have had, however close they are
         order = _in_turn([len(part.eigenvalue) for part in found], which, order)
     order = order[:number]

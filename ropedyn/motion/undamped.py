@@ -90,6 +90,7 @@ class UndampedResponses:
         return self.at(np.array([-shift], dtype=np.complex128))[..., 0].real
 
     def _yields(self, shift: float, whole: Real) -> Real:
+        """Return the products of what drives and responses yield by themselves, else the whole."""
         points = [p for p in dict.fromkeys([*self.drives, *self.responses]) if _is_plain(p)]
         own: dict[Any, float] = {}
         softest: dict[str, float] = {}

@@ -24,7 +24,7 @@ from ..base.errors import SceneError, SolveError
 from ..chain.compiled import Compiled
 from ..chain.port import Point, is_force
 from ..chain.tip import is_tip
-from ..eigen.spectrum import HIGHEST, TIE, count_component, numbers_below, spectrum
+from ..eigen.spectrum import HIGHEST, apart, count_component, numbers_below, spectrum
 from ..scene import damping
 from .moved_end import refuse_moved_ends
 from .question import Bound, Question, Solver
@@ -217,8 +217,8 @@ def numbered_ratios(
     own = model.components.index(component)
     for k, other in enumerate(model.components):
         if other != component:
-            limit = eigenvalue + TIE * (own - k) * np.abs(eigenvalue)
-            number = number + numbers_below(model.chain.only(other), limit).astype(np.intp)
+            below = numbers_below(model.chain.only(other), apart(eigenvalue, own - k))
+            number = number + below.astype(np.intp)
     every = damping.ratios(model.scene.dampings, int(number.max(initial=-1)) + 1)
     return number, every[number]
 

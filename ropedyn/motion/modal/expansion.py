@@ -33,11 +33,10 @@ from ...response.modal_sum import (
 from ...response.moved_end import is_end
 from ...scene import damping
 from ...signal import contour
-from ..undamped import UndampedResponses, losses_of
+from ..undamped import ROUND, UndampedResponses, losses_of
 
 LARGEST, MANY = 1000, 400
 """All modes of a chain with so many unknowns are summed at most, and so many modes of others."""
-ROUND = 1e-11  # A rest of this part of the sum over modes is rounding.
 
 
 class Expansion(NamedTuple):
