@@ -38,6 +38,10 @@ Told = TypeVar("Told")
 MORE, MOST = 4, 1600  # So many times more modes are summed next, and so many at most.
 LOOSER = (TOLERANCE, 0.1, 2.0)  # That the motion of continuous spans keeps to, if it can.
 SHAPED = 64  # Modes that the places of a shape resolve.
+UNTOLD = (
+    ". Rounding does so much: a larger tolerance or a shorter time help, and one damping ratio for "
+    "modes that lie too close together to tell which is which"
+)
 
 
 def solve_linear(run: Run) -> History:
@@ -145,6 +149,9 @@ def _by_methods(run: Run) -> Moved:
             refused.append(f"{method}: {moved}")
             continue
         advice = ". A larger tolerance, more times or a smoother force help"
+        rounded = moved._replace(error=np.broadcast_to(moved.rounding, moved.value.shape))
+        if not (rounded.shares(run) <= tolerance).all():
+            advice = UNTOLD
         share = moved.shares(run)
         late = np.flatnonzero(~(share <= tolerance))
         if all(is_still(run, int(r)) for r in late):

@@ -24,6 +24,7 @@ class Moved(NamedTuple):
     method: str  # "modal" or "line"
     modes: int = 0  # that were summed
     lines: int = 0  # rates that were looked at
+    rounding: Real | float = 0.0  # of sums over modes, a part of the error
 
     def shares(self, run: Run) -> Real:
         """Return the largest error of each response over what it is a share of, (responses,)."""

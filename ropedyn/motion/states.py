@@ -13,6 +13,7 @@ modes: they are laws of these points, as stops and friction are.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -26,22 +27,19 @@ from ..chain.port import Point, is_force, locate
 from ..eigen.damped.proportional import Proportional, proportional
 from ..eigen.damped.rates import Rates
 from ..eigen.damped.residue import spread
-from ..eigen.spectrum import spectrum
+from ..eigen.spectrum import parted, spectrum
 from ..response.modal_sum import known_ratios
 from ..response.moved_end import is_end
 from ..scene.damping import having
 from ..scene.end import end_of
 from ..scene.parts.part import standing
 from ..signal import contour
-from .undamped import Parted, UndampedResponses, losses_of
+from .undamped import ROUND, Parted, UndampedResponses, losses_of, mixed
 
 LARGEST = 200  # All modes of a chain with so many are taken.
-EQUAL = 1e-9  # Eigenvalues that differ by this share are one, of as many shapes.
 FEW = 16  # Nodes whose damping is not as their mass are points of their own, at most.
 KNOWN = 1e-13  # Above this share of what points yield rounding leaves digits.
-PROBES = 8  # Modes that lie close together are told apart at so many places
-SEEN = 1e-4  # that see so much of each,
-MIXED = 4 * np.finfo(float).eps  # and which is which to this over the distance between them.
+PROBES = 8  # Modes that lie close together are told apart at so many places.
 
 
 class Resistance(NamedTuple):
@@ -208,10 +206,12 @@ def states(
     outputs: Sequence[Point],
     *,
     modes: int,
+    circled: float = 1.0,
 ) -> States:
     """Find the states of one component, without its dashpots of single points.
 
-    Chains of at most `LARGEST` unknowns have all of their modes, others so many.
+    Chains of at most `LARGEST` unknowns have all of their modes, others so many. On circles of
+    other radii, times `circled`, rounding is another.
     """
     model, _ = without_dashpots(model, component)
     closed = _damping(model, component)
@@ -223,6 +223,7 @@ def states(
             got = f"{len(ratio)} for {len(eigenvalue)}"
             raise SceneError(f"damping ratio must be one number or one for each mode, got {got}")
     circles = contour.on_a_line(eigenvalue, error, beyond**2)
+    circles = circles._replace(radius=circled * circles.radius)
     asked = UndampedResponses(model, component, list(inputs), list(outputs))
     own, push, seen, rest = _parted_points(asked, eigenvalue, circles, beyond)
     left = np.zeros(rest.shape)
@@ -255,7 +256,7 @@ def states(
         beyond=beyond,
         drag=drag,
         ratio=float(ratio.max(initial=0.0)),
-        wrong=(circles.rounding + _mixed(eigenvalue, circles, sigma))[own],
+        wrong=(circles.rounding + np.divide(*mixed(eigenvalue, circles, sigma)))[own],
         left=left,
     )
 
@@ -295,12 +296,10 @@ def _eigenvalues(
     """Return those of the modes, the angular frequency of the next, and the errors."""
     finite = model.chain.only(component).finite
     wanted = finite if finite is not None and _has_all_modes(model, component) else modes
-    value, error = spectrum(model, component, wanted + 1)
-    beyond = float(np.sqrt(max(value[wanted], 0.0))) if len(value) > wanted else np.inf
-    value, error = value[:wanted], error[:wanted]
+    value, error, beyond = parted(*spectrum(model, component, wanted + 1), wanted)
     if np.isfinite(value).all() and not np.isfinite(error).all():
         raise SolveError(f"({', '.join(component)}): the modes have no correct digit")
-    return value, beyond, error
+    return value, math.sqrt(max(beyond, 0.0)), error
 
 
 def _parted_points(
@@ -322,18 +321,6 @@ def _parted_points(
     return own, push[:, i], seen[o], rest[np.ix_(o, i)]
 
 
-def _mixed(eigenvalue: Real, circles: contour.Circles, sigma: Real) -> Real:
-    """Return what it does that of close modes, each damped otherwise, few digits tell which is."""
-    wrong = np.zeros(len(eigenvalue))
-    for members in (one for one in circles.members if len(one) > 1):
-        value, rate = eigenvalue[members], sigma[members]
-        size, damped = np.abs(value).max(), max(float(rate.max()), np.finfo(float).tiny)
-        apart, gap = (np.abs(np.subtract.outer(one, one)) for one in (rate, value))
-        share = MIXED * apart / damped / (gap / size + np.finfo(float).eps)
-        wrong[members] = np.minimum(share.max(axis=1), 1.0)
-    return wrong
-
-
 def _probes(model: Compiled, component: tuple[str, ...]) -> list[Point]:
     """Return points spread along the rope."""
     at = spread(PROBES).tolist()
@@ -351,35 +338,55 @@ def _factored(
     inputs, outputs, _ = residue.shape
     same = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
     twin = np.array(same, dtype=np.intp)
+    one_each = circles.told_apart
     number: list[int] = []
-    found: list[_Product] = []
-    for members in circles.members:
-        parts, value = residue[:, :, members], eigenvalue[members]
+    found: list[tuple[Real, Real]] = []
+    for center, radius, members in zip(*circles.outer[:2], circles.outer.members):
         size = most / np.abs(parted.soft[members]).max()
-        several = _products(parts.sum(axis=2), len(members), size, twin)
-        turned = _turned(several, parts @ (value - value.mean()))
-        if len(turned) == len(members):
-            number += members.tolist()
-            found += turned
+        whole, noise = residue[:, :, members].sum(axis=2), np.zeros_like(most)
+        if len(members) > 1:
+            others = np.abs(np.delete(residue, members, axis=2))
+            away = np.abs(np.delete(eigenvalue, members) - center)
+            noise = contour.ROUNDED * (others @ (radius / away) + np.abs(whole))
+        several = _products(whole, len(members), size, twin, noise)
+        if len(members) == 1 or not several:
+            number += len(several) * members.tolist()
+            found += [(one.push, one.seen) for one in several]
             continue
-        for group in _equal(value):
-            left = group.tolist()
-            for one in _products(parts[:, :, group].sum(axis=2), len(group), size, twin):
-                # it is of the mode that has the most of where it moves most
-                share = _share(np.multiply.outer(one.push, one.seen), size)
-                i, o = np.unravel_index(int(share.argmax()), share.shape)
-                number.append(members[left.pop(int(np.abs(parts[i, o, left]).argmax()))])
-                found.append(one)
+        groups = [group for group in one_each if group[0] in members]
+        parts = np.array([residue[:, :, group].sum(axis=2) for group in groups])
+        shares = _shares(several, parts, [len(group) for group in groups])
+        push, seen = (np.array(one).T for one in list(zip(*several))[:2])
+        for group, share in zip(groups, shares):
+            number += [int(group[min(k, len(group) - 1)]) for k in range(len(share))]
+            found += [(push @ one, seen @ one) for one in share]
     own = np.array(number, dtype=np.intp)
-    push = np.array([one.push for one in found], dtype=np.float64).reshape(len(own), inputs)
-    seen = np.array([one.seen for one in found], dtype=np.float64).reshape(len(own), outputs)
+    push = np.array([one for one, _ in found], dtype=np.float64).reshape(len(own), inputs)
+    seen = np.array([one for _, one in found], dtype=np.float64).reshape(len(own), outputs)
     return own, push, seen.T
 
 
-def _equal(eigenvalue: Real) -> list[Index]:
-    """Gather eigenvalues that are one."""
-    near: Flags = np.diff(eigenvalue) <= EQUAL * np.abs(eigenvalue[1:])
-    return [g for g in np.split(np.arange(len(eigenvalue)), np.flatnonzero(~near) + 1) if len(g)]
+def _shares(several: list[_Product], parts: Real, ranks: list[int]) -> list[Real]:
+    """Return what each mode is of the products that close modes have together, (.., products).
+
+    These are all that they do, so only which mode does what is known the worse the closer they are.
+    """
+    i, o = (list(one) for one in zip(*(one.at for one in several)))
+    push = np.array([one.push[i] for one in several]).T
+    seen = np.array([one.seen[o] for one in several]).T
+    known = np.array([part[np.ix_(i, o)] for part in parts])
+    own = np.linalg.solve(push, np.linalg.solve(seen, known.transpose(0, 2, 1)).transpose(0, 2, 1))
+    value, shape = np.linalg.eigh((own + own.transpose(0, 2, 1)) / 2)
+    root = shape * np.sqrt(np.maximum(value, 0.0))[:, None]
+    # a mode has one product, as far as rounding leaves it
+    first = [one[:, max(0, len(several) - rank) :] for one, rank in zip(root, ranks)]
+    for each in (first, list(root)):
+        total = sum(one @ one.T for one in each)
+        size, axes = np.linalg.eigh(total)
+        if size[0] > 0.5:
+            break
+    whole = axes / np.sqrt(np.maximum(size, 0.5)) @ axes.T
+    return [(whole @ one[:, ::-1]).T for one in each]
 
 
 class _Product(NamedTuple):
@@ -387,15 +394,17 @@ class _Product(NamedTuple):
 
     push: Real  # (inputs,)
     seen: Real  # (outputs,)
-    share: float  # of the largest of points that are pushed and watched, or 0 of no such point
+    at: tuple[int, int]  # where it is known best
 
 
-def _products(R: Real, most: int, size: Real, twin: Index) -> list[_Product]:
+def _products(R: Real, most: int, size: Real, twin: Index, noise: Real) -> list[_Product]:
     """Return the products that residues are the sum of, as many as are not rounding."""
     found: list[_Product] = []
     for _ in range(most):
-        one = _largest(R, size, twin, alone=len(found) == most - 1)
-        if one is None:
+        one = _largest(R, size, twin, alone=most == 1)
+        if one is None or any(i == one.at[0] or o == one.at[1] for i, o in (f.at for f in found)):
+            break  # rounding is left where a product was known best
+        if (np.abs(np.multiply.outer(one.push, one.seen)) <= noise).all():
             break
         found.append(one)
         R = R - np.multiply.outer(one.push, one.seen)
@@ -412,15 +421,15 @@ def _largest(R: Real, size: Real, twin: Index, *, alone: bool) -> _Product | Non
     if not share.any():
         return None
     i, o = np.unravel_index(int(share.argmax()), share.shape)
-    own = [share[i, o] if o >= 0 and R[i, o] > 0 else 0.0 for i, o in enumerate(twin)]
-    best = int(np.argmax(own)) if own else 0
-    # of several shapes only these leave what others have as product of push and push
-    if own and not alone and own[best] > 1e-8 * share[i, o]:
+    if not alone:
+        # of several shapes only points that are pushed and watched leave products of such
+        own = [share[i, o] if o >= 0 and R[i, o] > 0 else 0.0 for i, o in enumerate(twin)]
+        best = int(np.argmax(own))
+        if own[best] <= ROUND * share[i, o]:
+            return None
         i, o = np.intp(best), twin[best]
-    if not alone and twin[i] != o:
-        twin = np.full_like(twin, -1)
     push, seen = _scaled(R, size, share, twin, (int(i), int(o)))
-    return _Product(push, seen, own[best] if own else 0.0)
+    return _Product(push, seen, (int(i), int(o)))
 
 
 def _scaled(
@@ -446,18 +455,3 @@ def _scaled(
     known = np.divide(a**2, a**2 + b**2, out=np.full(len(t), 0.5), where=a + b > 0)
     push[t] = seen[w] = seen[w] + (push[t] - seen[w]) * known
     return push, seen
-
-
-def _turned(whole: list[_Product], moment: Real) -> list[_Product]:
-    """Return what modes that lie close together do, from their sum and that of square times each.
-
-    So only which of them is which is known the worse the closer they are. Return none where too
-    little is seen of one.
-    """
-    share = [one.share for one in whole]
-    if len(whole) < 2 or min(share) < SEEN * max(share):
-        return []
-    push, seen = (np.array(one).T for one in list(zip(*whole))[:2])
-    own = np.linalg.lstsq(push, np.linalg.lstsq(seen, moment.T)[0].T)[0]
-    _, turn = np.linalg.eigh((own + own.T) / 2)
-    return [_Product(*one, 0.0) for one in zip((push @ turn).T, (seen @ turn).T)]

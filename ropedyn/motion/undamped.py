@@ -24,6 +24,7 @@ from ..scene.parts.part import standing
 from ..signal import contour
 
 SOME = 64  # Points are pushed side by side.
+MIXED = 4 * np.finfo(float).eps  # Which mode is which is known to this over their distance.
 ROUND = 1e-11  # What all modes leave is rounding below this share of what there is.
 
 
@@ -119,6 +120,22 @@ class UndampedResponses:
         d, r = ([own[point] for point in some] for some in (self.drives, self.responses))
         with np.errstate(invalid="ignore"):
             return np.nan_to_num(np.sqrt(np.multiply.outer(d, r)), nan=np.inf, posinf=np.inf)
+
+
+def mixed(eigenvalue: Real, circles: contour.Circles, sigma: Real) -> tuple[Real, Real]:
+    """Return how far rates of close modes are off, each damped otherwise, and the largest of them.
+
+    As few digits tell which mode is which, (k,) [1/s].
+    """
+    off, most = np.zeros(len(eigenvalue)), np.ones(len(eigenvalue))
+    for members in (one for one in circles.outer.members if len(one) > 1):
+        value, rate = eigenvalue[members], sigma[members]
+        apart, gap = (np.abs(np.subtract.outer(one, one)) for one in (rate, value))
+        size = max(float(np.abs(value).max()), np.finfo(float).tiny)
+        share = MIXED / (gap / size + np.finfo(float).eps)
+        off[members] = (apart * np.minimum(share, 1.0)).max(axis=1)
+        most[members] = max(float(rate.max()), np.finfo(float).tiny)
+    return off, most
 
 
 def _is_plain(point: Any) -> bool:

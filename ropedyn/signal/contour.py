@@ -1,17 +1,19 @@
 """Residues of a function at its poles, from its values on circles around them.
 
-On a circle of radius rho about c with no other poles in it, t = (z - c)/rho,
+On a circle of radius rho about c with no other poles in it, t = (z - c)/rho, rho times the mean of
+f(z) t is the sum of the residues inside. Of a residue at a distance d outside n points see the
+share x/(1 + x), x = (rho/d)^n: little, but it may be many times larger, so that this is taken off.
 
-    rho (mean of f(z) t^(j+1)) = sum over the poles inside of r_k ((p_k - c)/rho)^j,
-
-to the power SAMPLES of the ratio of rho to the distance of the next pole. Poles that lie close
-together are in one circle: each residue of them is known the worse the closer they are, but what
-they are together is not.
+Poles that lie close together are in one circle, and in that are circles of their own, around such
+as lie closer still and around one. Each residue is known the worse the closer the next pole is; the
+sum of all is that of the outer circle, so that only which pole has what depends on it, by as much
+as the poles are one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -27,33 +29,48 @@ NARROW, WIDE = 0.05, 1 / 4  # or so much where that is less than this part of th
 ALIKE, APART = 1e-3, 8.0
 """Poles that differ by this share are in one circle, if others are so many times further away."""
 ROUNDED = 64 * np.finfo(float).eps  # A function near a pole is known to this of the pole.
+CLOSER = 16.0  # Poles in one circle that lie closer than this part of their width have their own.
 MOST = 1 << 21  # So many numbers are computed at a time.
 
 
 class Circles(NamedTuple):
-    """Around poles, with no others in them."""
+    """Around poles, with no others in them; those inside of others come after these."""
 
     center: Real  # (n,)
     radius: Real  # (n,)
     points: Index  # (n,)
     members: list[Index]  # which poles, n arrays
+    parent: Index  # (n,) which circle each is inside of, or -1
 
     @property
     def rounding(self) -> Real:
         """What rounding does to residues of poles with little room, relative, shape (poles,)."""
-        narrow = self.points == TOGETHER
-        share = np.divide(np.abs(self.center), self.radius, out=0 * self.radius, where=narrow)
-        return np.repeat(ROUNDED * share, self.size)
+        outer = self.outer
+        narrow = outer.points == TOGETHER
+        share = np.divide(np.abs(outer.center), outer.radius, out=0 * outer.radius, where=narrow)
+        return np.repeat(ROUNDED * share, outer.size)
 
-    def some(self, which: Index) -> Circles:
-        """Return some of them."""
-        members = [self.members[k] for k in which]
-        return Circles(self.center[which], self.radius[which], self.points[which], members)
+    @property
+    def outer(self) -> Circles:
+        """Those that are in no other."""
+        return self.some(np.flatnonzero(self.parent < 0))
 
     @property
     def size(self) -> Index:
         """How many poles each has in it, shape (n,)."""
         return np.array([len(one) for one in self.members], dtype=np.intp)
+
+    @property
+    def told_apart(self) -> list[Index]:
+        """Which poles are one: those of the innermost circles."""
+        return [one for k, one in enumerate(self.members) if k not in self.parent]
+
+    def some(self, which: Index) -> Circles:
+        """Return some of them."""
+        members = [self.members[k] for k in which]
+        return Circles(
+            self.center[which], self.radius[which], self.points[which], members, self.parent[which]
+        )
 
 
 def on_a_line(pole: Real, error: Real, beyond: float) -> Circles:
@@ -61,84 +78,98 @@ def on_a_line(pole: Real, error: Real, beyond: float) -> Circles:
     gap = np.concatenate([[np.inf], np.diff(pole), [beyond - pole[-1:].sum()]])[: len(pole) + 1]
     size = np.maximum(np.abs(pole[1:]), np.abs(pole[:-1]))
     one = gap[1:-1] <= 4 * (error[1:] + error[:-1])  # not told apart
-    found: list[tuple[int, int]] = []
-    far = np.flatnonzero(~one & (gap[1:-1] > ALIKE * size)) + 1
-    left = list(zip([0, *far.tolist()], [*far.tolist(), len(pole)])) if len(pole) else []
+    inside = np.concatenate([[np.inf], np.where(one, 0.0, gap[1:-1]), [np.inf]])[: len(gap)]
+    found = _apart(gap, inside, (0, len(pole)), ALIKE * size) if len(pole) else []
+    parent = [-1] * len(found)
+    for k, (i, j) in enumerate(found):  # which grows
+        if inside[i + 1 : j].any():
+            limit = min((pole[j - 1] - pole[i]) / CLOSER, inside[i + 1 : j].max() / 2)
+            within = _apart(gap, inside, (i, j), np.full(j - i - 1, limit))
+            found += within
+            parent += [k] * len(within)
+    room = np.array([min(gap[i], gap[j]) for i, j in found])
+    return _circles(pole, [np.arange(i, j) for i, j in found], room, parent)
+
+
+def _apart(gap: Real, inside: Real, some: tuple[int, int], limit: Real) -> list[tuple[int, int]]:
+    """Part poles from i to j where gaps are beyond a limit, and where they do not stand apart."""
+    i, j = some
+    cuts = [i, *(np.flatnonzero(inside[i + 1 : j] > limit) + i + 1).tolist(), j]
+    left, found = list(pairwise(cuts)), []
     while left:
         i, j = left.pop()
-        inside = np.where(one[i : j - 1], 0.0, gap[i + 1 : j])
-        if inside.any() and APART * (pole[j - 1] - pole[i]) > min(gap[i], gap[j]):
-            k = i + 1 + int(inside.argmax())
+        within = inside[i + 1 : j]
+        if within.any() and APART * gap[i + 1 : j].sum() > min(gap[i], gap[j]):
+            k = i + 1 + int(within.argmax())
             left += [(i, k), (k, j)]
         else:
             found.append((i, j))
-    found.sort()
-    room = np.array([min(gap[i], gap[j]) for i, j in found])
-    return _circles(pole, [np.arange(i, j) for i, j in found], room)
+    return sorted(found)
 
 
-def _circles(pole: Real, members: list[Index], room: Real) -> Circles:
+def _circles(pole: Real, members: list[Index], room: Real, parent: list[int]) -> Circles:
     """Draw circles around poles that have so much room."""
-    first = np.array([one[0] for one in members], dtype=np.intp)
-    center, spread = pole[first].copy(), np.zeros(len(members))
-    several = [k for k, one in enumerate(members) if len(one) > 1]
-    for k in several:
-        center[k] = pole[members[k]].mean()
-        spread[k] = np.abs(pole[members[k]] - center[k]).max()
+    center = np.array([pole[one].mean() for one in members], dtype=np.float64)
+    spread = np.array([np.abs(pole[one] - at).max() for one, at in zip(members, center)])
     size = np.abs(center)
     room = np.where(size > 0, np.minimum(room, size), np.where(np.isfinite(room), room, 1.0))
-    narrow = room <= NARROW * size
+    several = np.array([len(one) > 1 for one in members], dtype=np.bool_)
+    narrow = several | (room <= NARROW * size)
     radius = np.where(narrow, WIDE, RADIUS) * room
-    radius[several] = np.maximum(RADIUS * room, np.sqrt(spread * room))[several]
-    narrow[several] = True
-    return Circles(center, radius, np.where(narrow, TOGETHER, ALONE), members)
+    radius[several] = np.maximum(radius, np.sqrt(spread * room))[several]
+    points = np.where(narrow, TOGETHER, ALONE)
+    return Circles(center, radius, points, members, np.array(parent, dtype=np.intp))
 
 
-def moments(function: Function, circles: Circles, count: int, points: int) -> Real:
-    """Return the sums of r_k ((p_k - c)/rho)^j in each circle, j < count."""
+def residues(function: Function, pole: Real, circles: Circles) -> Real:
+    """Return residues whose sum is right, shape (..., poles); poles in no circle have none."""
+    each = [np.flatnonzero(circles.points == points) for points in (ALONE, TOGETHER)]
+    found = [_within(function, circles.some(which)) for which in each if len(which)]
+    value = np.concatenate(found)[np.argsort(np.concatenate(each))]
+    first = _told(len(pole), circles, value)
+    return _told(len(pole), circles, value - _seen_too(pole, circles, first))
+
+
+def _within(function: Function, circles: Circles) -> Real:
+    """Return the sums of residues in circles of as many points, shape (circles, ...)."""
+    points = int(circles.points[0])
     half = points // 2  # the other half is conjugate
     t = np.exp(2j * np.pi * (np.arange(half) + 0.5) / points)
-    power = t[:, None] ** np.arange(1, count + 1) / half
-    every: list[Complex] = []
+    every: list[Real] = []
     step, at = 1, 0
     while at < len(circles.center):
         center, radius = (one[at : at + step, None] for one in circles[:2])
         z = center + radius * t
         value = function(z.ravel())
-        mean = radius * (value.reshape(*value.shape[:-1], *z.shape) @ power)
-        every.append(np.moveaxis(mean, (-2, -1), (0, 1)))
+        mean = radius[:, 0] * (value.reshape(*value.shape[:-1], *z.shape) @ (t / half))
+        every.append(np.moveaxis(mean.real, -1, 0))
         at += step
         step = max(1, MOST * len(z) // max(value.size, 1))
-    return np.concatenate(every).real
+    return np.concatenate(every)
 
 
-def residues(function: Function, pole: Real, circles: Circles) -> Real:
-    """Return residues whose sum is right, shape (..., poles); poles in no circle have none."""
-    count = circles.size
-    parts: list[tuple[Index, Real]] = []
-    for points in (ALONE, TOGETHER):
-        some = circles.some(np.flatnonzero((count == 1) & (circles.points == points)))
-        if some.members:
-            own = moments(function, some, 1, points)[:, 0]
-            parts.append((np.concatenate(some.members), np.moveaxis(own, 0, -1)))
-    for several in np.unique(count[count > 1]).tolist():
-        some = circles.some(np.flatnonzero(count == several))
-        for k, moment in enumerate(moments(function, some, several, TOGETHER)):
-            one = some.some(np.array([k]))
-            parts.append((one.members[0], _split(pole, one, moment)))
-    assert parts
-    result = np.zeros((*parts[0][1].shape[:-1], len(pole)))
-    for members, own in parts:
-        result[..., members] = own
+def _told(poles: int, circles: Circles, value: Real) -> Real:
+    """Return the residues that sums in circles tell, shape (..., poles)."""
+    value = value.copy()
+    for k in np.unique(circles.parent[circles.parent >= 0]).tolist():
+        # what inner sums miss of the outer one is what rounding did to them
+        inner = np.flatnonzero(circles.parent == k)
+        share = (1 / circles.radius[inner]) / (1 / circles.radius[inner]).sum()
+        value[inner] += np.multiply.outer(share, value[k] - value[inner].sum(axis=0))
+    result = np.zeros((*value.shape[1:], poles))
+    for k, members in enumerate(circles.members):
+        if k not in circles.parent:
+            result[..., members] = value[k][..., None] / len(members)
     return result
 
 
-def _split(pole: Real, circle: Circles, moment: Real) -> Real:
-    """Return the residues of least size that have these moments, shape (..., members)."""
-    place = (pole[circle.members[0]] - circle.center[0]) / circle.radius[0]
-    powers = place ** np.arange(len(place))[:, None]
-    own = np.linalg.lstsq(powers, moment.reshape(len(moment), -1), rcond=1e-13)[0]
-    return np.moveaxis(own.reshape(moment.shape), 0, -1)
+def _seen_too(pole: Real, circles: Circles, residue: Real) -> Real:
+    """Return what residues at poles outside add to the sums in circles."""
+    away = pole - circles.center[:, None]
+    for one, members in zip(away, circles.members):
+        one[members] = np.inf
+    share = (circles.radius[:, None] / away) ** circles.points[:, None]
+    return np.tensordot(share / (1 + share), residue, (1, residue.ndim - 1))
 
 
 def clusters(near: Flags) -> list[Index]:

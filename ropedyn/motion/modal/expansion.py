@@ -23,7 +23,7 @@ from ...chain.compiled import Compiled, once
 from ...chain.port import Point, is_force, moving
 from ...eigen.damped.proportional import Proportional, proportional
 from ...eigen.damped.rates import Rates
-from ...eigen.spectrum import HIGHEST, count_component, slowest_lump, spectrum
+from ...eigen.spectrum import HIGHEST, count_component, parted, slowest_lump, spectrum
 from ...response.modal_sum import (
     LEAST,
     REACH,
@@ -33,7 +33,7 @@ from ...response.modal_sum import (
 from ...response.moved_end import is_end
 from ...scene import damping
 from ...signal import contour
-from ..undamped import ROUND, UndampedResponses, losses_of
+from ..undamped import ROUND, UndampedResponses, losses_of, mixed
 
 LARGEST, MANY = 1000, 400
 """All modes of a chain with so many unknowns are summed at most, and so many modes of others."""
@@ -61,6 +61,8 @@ class Expansion(NamedTuple):
     # Angular frequency of the lowest that is left out [rad/s], infinite where none is
     beyond: float
     wrong: Real | float = 0.0  # (k,) error of each square, relative
+    # (k,) how far each sigma is off, as few digits tell which of close modes is which [1/s]
+    mixed: Real | float = 0.0
 
     @property
     def modes(self) -> int:
@@ -138,9 +140,8 @@ def _expansion(asked: _Asked) -> Expansion:
     if is_modal:
         ratio = known_ratios(model, component, eigenvalue)
         if len(ratio) < len(eigenvalue):
-            beyond = float(eigenvalue[len(ratio)])
-        eigenvalue, error = eigenvalue[: len(ratio)], error[: len(ratio)]
-        sigma = ratio * np.sqrt(np.maximum(eigenvalue, 0.0))
+            eigenvalue, error, beyond = parted(eigenvalue, error, len(ratio))
+        sigma = ratio[: len(eigenvalue)] * np.sqrt(np.maximum(eigenvalue, 0.0))
         return _closed(asked, (eigenvalue, error), beyond, Proportional(1, 0, 0), sigma)
     if closed is not None:
         sigma = (closed.drag.real + closed.soften.real * eigenvalue) / 2
@@ -162,9 +163,7 @@ def _eigenvalues(asked: _Asked) -> tuple[Real, Real, float]:
         except SolveError:  # more than can be walked
             below = MANY
         wanted = min(max(below, LEAST), MANY)
-    value, error = spectrum(asked.model, asked.component, wanted + 1)
-    beyond = float(value[wanted]) if len(value) > wanted else np.inf
-    return value[:wanted], error[:wanted], beyond
+    return parted(*spectrum(asked.model, asked.component, wanted + 1), wanted)
 
 
 # --- damping in proportion ----------------------------------------------------------------------
@@ -203,7 +202,8 @@ def _closed(
             bound = asked.bounded(lambda own: _left(own, eigenvalue, circles))
     lowest = float(np.sqrt(max(beyond, 0.0)))
     wrong = np.divide(error, np.abs(eigenvalue), out=np.ones_like(error), where=eigenvalue != 0)
-    return Expansion(sigma, stiff * eigenvalue, a, b, p, r, rest, bound, lowest, wrong)
+    off, _ = mixed(eigenvalue, circles, sigma)
+    return Expansion(sigma, stiff * eigenvalue, a, b, p, r, rest, bound, lowest, wrong, off)
 
 
 def _left(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> Real:

@@ -29,8 +29,9 @@ def superpose(run: Run) -> Moved:
     """Sum up the modes of a linear model; see `Model.transient`."""
     shares = expand(run.model, run.places, run.responses, modes=run.modes, resolved=fastest(run))
     value = _responses(run, shares, len(run.responses))
-    error = np.add(_truncation(run, shares)[:, None], _rounding(run, shares, value))
-    return Moved(value, error, "modal", modes=sum(share.expansion.modes for share in shares))
+    rounding, modes = _rounding(run, shares, value), sum(one.expansion.modes for one in shares)
+    error = np.add(_truncation(run, shares)[:, None], rounding)
+    return Moved(value, error, "modal", modes=modes, rounding=rounding)
 
 
 def estimated(run: Run, moved: Moved) -> Moved:
@@ -44,8 +45,7 @@ def apart(moved: Moved, fewer: Sequence[Moved]) -> Real:
     from scipy.ndimage import maximum_filter1d
 
     distance = np.max([np.abs(moved.value - one.value) for one in fewer], axis=0)
-    rounding = RESIDUES * np.abs(moved.value).max(axis=1, initial=0.0)
-    return TIMES * maximum_filter1d(distance, 2 * AROUND + 1, axis=-1) + rounding[:, None]
+    return np.asarray(TIMES * maximum_filter1d(distance, 2 * AROUND + 1, axis=-1) + moved.rounding)
 
 
 def fastest(run: Run) -> float:
@@ -104,7 +104,8 @@ def _rounding(run: Run, shares: tuple[Share, ...], value: Real) -> Real:
     )
     rough = PHASES * math.sqrt(fastest) * most
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
-    if (rough * since[-1] <= SMALL * tolerance * most).all():
+    told = not any(np.any(share.expansion.mixed) for share in shares)
+    if told and (rough * since[-1] <= SMALL * tolerance * most).all():
         return np.asarray(still[:, None] + np.multiply.outer(rough, since))
     return np.asarray(still[:, None] + _drifted(run, each, most, since))
 
@@ -116,7 +117,7 @@ def _drifted(run: Run, each: list[tuple[Share, int, Real]], most: Real, since: R
     for share, k, size in each:
         modes, r = share.expansion, share.response
         omega = np.sqrt(np.abs(modes.square))
-        slip = omega * modes.wrong / 2
+        slip = omega * modes.wrong / 2 + modes.mixed
         memory = 1 / np.maximum(modes.sigma, 1 / span)
         # a mode moves no more than all do, but for those that cancel
         seen = np.maximum(most[r, None], size)

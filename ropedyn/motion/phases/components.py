@@ -47,8 +47,10 @@ class Moving:
         return not np.isfinite(self.system.states.beyond)
 
 
-def moving_components(run: Run, looks: Sequence[Look], modes: int) -> list[Moving]:
-    """Return the components that are pushed."""
+def moving_components(
+    run: Run, looks: Sequence[Look], modes: int, *, circled: float = 1.0
+) -> list[Moving]:
+    """Return the components that are pushed; see `states`."""
     model, found = run.model, []
     for component in model.components:
         drives = [k for k, d in enumerate(run.drives) if moving(d) in component]
@@ -59,7 +61,7 @@ def moving_components(run: Run, looks: Sequence[Look], modes: int) -> list[Movin
         laws = phase_laws(model, component)
         inputs: list[Any] = [*(run.drives[k] for k in drives), *loads, *laws.points]
         outputs: list[Point] = [*seen, *laws.points]
-        st = states(model, component, inputs, outputs, modes=modes)
+        st = states(model, component, inputs, outputs, modes=modes, circled=circled)
         span = float(run.time[-1] - run.time[0])
         system = PhaseSystem(st, laws, len(drives), len(loads), len(seen), span)
         found.append(Moving(system, drives, list(loads.values()), watched))

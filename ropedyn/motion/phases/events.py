@@ -24,7 +24,9 @@ from .pieces import pieces
 from .walk import PhaseWalk, Visit
 
 MODES, MOST = 64, 128  # Of continuous spans and long chains, at first and at most.
-NUDGE = 1e-11  # Rounding is at most this part of what drives.
+CIRCLED, ROUGH = 0.6, 4.0
+"""Rounding is off by more than this part of what circles of such radii are off from each other."""
+NUDGE = 1e-11 / ROUGH  # It is at most 1e-11 of what drives.
 OFF = 64 * np.finfo(float).eps  # Squares of poles are known to this part.
 MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.
 ROUNDED = 256 * np.finfo(float).eps  # Of the modes that move a point, what rounding moves it.
@@ -49,7 +51,7 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
     sizes = [np.zeros((2, len(one.points))) for one in looks]
     events: list[float] = []
     whole, until = True, math.inf
-    components = moving_components(run, looks, modes)
+    components = moving_components(run, looks, modes, circled=CIRCLED if nudge else 1.0)
     for one in components:
         walk, reached = PhaseWalk(one.system, OFF if nudge else 0.0), float(run.time[0])
         forces, st = [run.forces[k] for k in one.drives], one.system.states
@@ -141,7 +143,8 @@ def solve_events(run: Run, *, whole: bool = False) -> History:
 def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
     """Return the motion and the error that modes and rounding cause, as its first look.
 
-    It is followed once more, with half the modes, or where there are all with its push nudged.
+    It is followed once more, with half the modes, or where there are all with its push nudged
+    and other rounding.
     """
     least = run.tolerance or TOLERANCE
     modes = run.modes or MODES
@@ -152,7 +155,7 @@ def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
         return found, np.full(found.seen[0].shape, np.inf)
     if coarse.whole:
         found = follow(run, looks, modes // 2)
-        return found, _running(found.seen[0] - coarse.seen[0]) + _rounding(found)
+        return found, _running(ROUGH * (found.seen[0] - coarse.seen[0])) + _rounding(found)
     while True:
         found = follow(run, looks, modes)
         error = _running(MARGIN * (found.seen[0] - coarse.seen[0])) + _rounding(found)
