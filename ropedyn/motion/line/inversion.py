@@ -48,6 +48,7 @@ ROUGH = 1e-3  # Else it is looked at for two periods, with this alias,
 FAR_LARGER = 10.0  # as where slow rates tell of motion so much larger after both.
 ROUNDED = 33  # Rounding is bounded at so many of the rates that are looked at together.
 MOST_NUMBERS = 1 << 23  # Lines times pairs of drives and responses, at most.
+PEAK = 4.0  # Rates share some of their rounding: the sum is so many times the root of squares.
 EPS = 16 * np.finfo(float).eps
 FAR, LEAST_FAR = 1e4, 1e2  # So many times the highest rate of the times no mode of a chain is left,
 # and so many times that of the sum: what is infinite there is.
@@ -158,7 +159,7 @@ class Line:
         most = np.array([np.abs(one.value(self.run.time)).max() for one in self.forces])
         unsure = EPS / 4 * np.multiply.outer(most, np.abs(grid.s) ** (self.run.order - 1))
         wrong += np.einsum("drk,dk->rk", np.abs(self.value), unsure)
-        wrong = np.sqrt((wrong**2).sum(axis=1)) / grid.period
+        wrong = PEAK * np.sqrt((wrong**2).sum(axis=1)) / grid.period
         grown = np.exp(grid.a * (self.run.time - grid.begin))
         return moved._replace(error=moved.error + np.multiply.outer(wrong, grown))
 
