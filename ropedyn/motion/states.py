@@ -38,6 +38,7 @@ from .undamped import ROUND, Parted, UndampedResponses, losses_of, mixed
 
 LARGEST = 200  # All modes of a chain with so many are taken.
 FEW = 16  # Nodes whose damping is not as their mass are points of their own, at most.
+CIRCLED = 0.6  # Other circles are so much smaller.
 KNOWN = 1e-13  # Above this share of what points yield rounding leaves digits.
 PROBES = 8  # Modes that lie close together are told apart at so many places.
 
@@ -206,12 +207,12 @@ def states(
     outputs: Sequence[Point],
     *,
     modes: int,
-    circled: float = 1.0,
+    other: bool = False,
 ) -> States:
     """Find the states of one component, without its dashpots of single points.
 
-    Chains of at most `LARGEST` unknowns have all of their modes, others so many. On circles of
-    other radii, times `circled`, rounding is another.
+    Chains of at most `LARGEST` unknowns have all of their modes, others so many. `other` are as far
+    from these as rounding is from the truth: of other circles, with squares off by their errors.
     """
     model, _ = without_dashpots(model, component)
     closed = _damping(model, component)
@@ -223,7 +224,9 @@ def states(
             got = f"{len(ratio)} for {len(eigenvalue)}"
             raise SceneError(f"damping ratio must be one number or one for each mode, got {got}")
     circles = contour.on_a_line(eigenvalue, error, beyond**2)
-    circles = circles._replace(radius=circled * circles.radius)
+    if other:
+        circles = circles._replace(radius=CIRCLED * circles.radius)
+        eigenvalue = eigenvalue + error * (-1.0) ** np.arange(len(error))
     asked = UndampedResponses(model, component, list(inputs), list(outputs))
     own, push, seen, rest = _parted_points(asked, eigenvalue, circles, beyond)
     left = np.zeros(rest.shape)

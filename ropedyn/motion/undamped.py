@@ -123,10 +123,7 @@ class UndampedResponses:
 
 
 def mixed(eigenvalue: Real, circles: contour.Circles, sigma: Real) -> tuple[Real, Real]:
-    """Return how far rates of close modes are off, each damped otherwise, and the largest of them.
-
-    As few digits tell which mode is which, (k,) [1/s].
-    """
+    """Return how far rates of close modes are off, as one may be the other, and the largest."""
     off, most = np.zeros(len(eigenvalue)), np.ones(len(eigenvalue))
     for members in (one for one in circles.outer.members if len(one) > 1):
         value, rate = eigenvalue[members], sigma[members]

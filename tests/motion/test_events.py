@@ -136,6 +136,24 @@ def test_close_modes_with_one_product_keep_what_they_do_together(heavy, apart):
     assert (off <= by_events.error + linear.error).all()
 
 
+def test_modes_that_are_not_known_to_all_digits_count_in_the_error():
+    """A mode is known to 3e-8 beside springs of 3e11 N/m: 4e-8 off, 1e-11 said."""
+    springs = [rd.Spring(k * 3.0 / 7, 3.4e11) for k in (4, 6)]
+    time = np.linspace(0.0, 0.09, 301)
+
+    def moved(*part):
+        scene = rd.Scene(rd.Rope(3.0, 2.0633213), tension=2341.92087, parts=[*springs, *part])
+        model = scene.compile(elements=7, element="rigid")
+        asked = {"drive": ("z", 3.0 * 6 / 7), "force": rd.Sine(1.0, 10.83, phase=4.98)}
+        return model.transient(time, **asked, response=("z", 3.0 * 5 / 7))
+
+    by_events, linear = moved(rd.Stop(9.0 / 7, 1e4, gap=1e6)), moved()
+    assert (by_events.cost.method, linear.cost.method) == ("events", "modal")
+    off = np.abs(by_events.value - linear.value)
+    assert (off <= by_events.error + linear.error).all()
+    assert off.max() < 1e-6 * np.abs(linear.value).max()  # measured: 4e-8
+
+
 @pytest.mark.parametrize("heavy", [1e3, 1e5])
 def test_points_that_a_mode_hardly_moves_are_known_by_those_that_it_does(heavy):
     """A load in the first span, seen in the last beyond two masses: 1e-7 off, 1e-11 said."""

@@ -12,10 +12,7 @@ from ...base.computed import computed
 from ...base.errors import SolveError
 
 PERIODS = ((1e-5, (1.25, 1e-9)), (1e-6, (1.4, 1e-9)), (0.0, (2.0, 1e-11)))
-"""From this tolerance on the period is so much longer than the record, and this alias is left.
-
-Over longer ones rounding grows less.
-"""
+"""From this tolerance on the period is so much longer than the record, and this alias is left."""
 LONGEST = 2.0  # It is this long at most: what moves longer before its cause is no motion of ropes.
 FADED = 16.0  # The next period's motion before its cause has faded by e^-16, and by its decay.
 EVEN = 1e-6  # Times that are off by this part of a step are even,

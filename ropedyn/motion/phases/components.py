@@ -48,7 +48,7 @@ class Moving:
 
 
 def moving_components(
-    run: Run, looks: Sequence[Look], modes: int, *, circled: float = 1.0
+    run: Run, looks: Sequence[Look], modes: int, *, other: bool = False
 ) -> list[Moving]:
     """Return the components that are pushed; see `states`."""
     model, found = run.model, []
@@ -61,7 +61,7 @@ def moving_components(
         laws = phase_laws(model, component)
         inputs: list[Any] = [*(run.drives[k] for k in drives), *loads, *laws.points]
         outputs: list[Point] = [*seen, *laws.points]
-        st = states(model, component, inputs, outputs, modes=modes, circled=circled)
+        st = states(model, component, inputs, outputs, modes=modes, other=other)
         span = float(run.time[-1] - run.time[0])
         system = PhaseSystem(st, laws, len(drives), len(loads), len(seen), span)
         found.append(Moving(system, drives, list(loads.values()), watched))

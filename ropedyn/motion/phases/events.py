@@ -24,8 +24,7 @@ from .pieces import pieces
 from .walk import PhaseWalk, Visit
 
 MODES, MOST = 64, 128  # Of continuous spans and long chains, at first and at most.
-CIRCLED, ROUGH = 0.6, 4.0
-"""Rounding is off by more than this part of what circles of such radii are off from each other."""
+ROUGH = 4.0  # Rounding moves other states by more than this part of what it does.
 NUDGE = 1e-11 / ROUGH  # It is at most 1e-11 of what drives.
 OFF = 64 * np.finfo(float).eps  # Squares of poles are known to this part.
 MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.
@@ -51,7 +50,7 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
     sizes = [np.zeros((2, len(one.points))) for one in looks]
     events: list[float] = []
     whole, until = True, math.inf
-    components = moving_components(run, looks, modes, circled=CIRCLED if nudge else 1.0)
+    components = moving_components(run, looks, modes, other=nudge > 0)
     for one in components:
         walk, reached = PhaseWalk(one.system, OFF if nudge else 0.0), float(run.time[0])
         forces, st = [run.forces[k] for k in one.drives], one.system.states
