@@ -10,6 +10,7 @@ from support.orbits import compared, multipliers, random_scene, states_of
 
 import ropedyn as rd
 from ropedyn.motion.periodic import slipping
+from ropedyn.motion.periodic.continuation import Branch, Place
 from ropedyn.motion.periodic.stability import FEWEST, _least, growing
 from ropedyn.motion.periodic.state import settled
 
@@ -92,6 +93,23 @@ def test_folds_beside_a_stop_are_off_by_no_more_than_is_said(stiffness, gap):
         at, omega = FORCE * branches[k].value[0, -1], 2 * np.pi * f
         exact = fold_by_shooting(omega, at.real, -omega * at.imag, presses)
         assert abs(f - exact) <= branches.fold_error[k] + 1e-9 * f
+
+
+@pytest.mark.parametrize("begin", [0.01, 0.003, 0.1])
+def test_a_fold_is_where_it_is_on_the_branch_too(begin):
+    """Its tangent is that of Newton's step before: 1e-11 to 6e-11 off along the branch."""
+
+    def linearise(x, p):
+        gap = p - 1 - x**2 - 0.7 * x**3 * np.exp(x)
+        along = 2 * x + np.exp(x) * (2.1 * x**2 + 0.7 * x**3)
+        return gap, -along[:, None], np.ones(1)
+
+    p = 1 + begin**2 + 0.7 * begin**3 * np.exp(begin)
+    branch = Branch(linearise, Place(np.array([begin]), p, np.zeros(1), 0.0), 1.0, 1.0, str)
+    branch.turned(1.0)
+    fold = branch.fold_near(branch.place)
+    assert abs(fold.x[0]) < 1e-12  # measured: 6e-16 to 9e-14
+    assert abs(fold.p - 1) < 1e-15
 
 
 def test_three_motions_between_folds_and_the_middle_one_is_unstable():

@@ -23,6 +23,7 @@ ASTRAY, FAR = 0.5, 0.25  # A step returns to the curve from this part of its len
 NEWTON = 10  # Steps of Newton's method at most.
 ENOUGH = 1e-7  # Its last one, relative: what it leaves is about the square of that.
 ROUGHLY = 3e-3  # Its last one of what is only on the way, over the length of the step.
+SHARPLY = 1e-10  # On a fold its tangent, which is that of the step before, has to be known.
 BESIDE = (1e-4, 1e-3, 1e-2, 1e-1)  # So far to both sides a fold is looked for again.
 PLENTY = 3  # A step that takes more is not followed by a longer one.
 
@@ -170,7 +171,7 @@ class Branch:
             if both[0] is None or both[1] is None:
                 return None
             if both[0][0].up * both[1][0].up < 0:
-                return self.fold(both[0][0], both[1][0])
+                return self.fold(both[0][0], both[1][0], enough=SHARPLY)
         return None
 
     def _size(self, x: Real) -> float:
