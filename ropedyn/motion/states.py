@@ -226,7 +226,9 @@ def states(
     circles = contour.on_a_line(eigenvalue, error, beyond**2)
     if other:
         circles = circles._replace(radius=CIRCLED * circles.radius)
-        eigenvalue = eigenvalue + error * (-1.0) ** np.arange(len(error))
+        off, eigenvalue = error * (-1.0) ** np.arange(len(error)), eigenvalue.copy()
+        for one in (one for one in circles.told_apart if eigenvalue[one].any()):
+            eigenvalue[one] = eigenvalue[one].mean() + off[one]
     asked = UndampedResponses(model, component, list(inputs), list(outputs))
     own, push, seen, rest = _parted_points(asked, eigenvalue, circles, beyond)
     left = np.zeros(rest.shape)

@@ -128,10 +128,11 @@ def mixed(eigenvalue: Real, circles: contour.Circles, sigma: Real) -> tuple[Real
     for members in (one for one in circles.outer.members if len(one) > 1):
         value, rate = eigenvalue[members], sigma[members]
         apart, gap = (np.abs(np.subtract.outer(one, one)) for one in (rate, value))
-        size = max(float(np.abs(value).max()), np.finfo(float).tiny)
-        share = MIXED / (gap / size + np.finfo(float).eps)
-        off[members] = (apart * np.minimum(share, 1.0)).max(axis=1)
+        share = MIXED / (gap / max(np.abs(value).max(), np.finfo(float).tiny) + MIXED)
+        off[members] = (apart * share).max(axis=1)
         most[members] = max(float(rate.max()), np.finfo(float).tiny)
+    for one in circles.told_apart:
+        off[one] = np.maximum(off[one], np.ptp(sigma[one]))
     return off, most
 
 

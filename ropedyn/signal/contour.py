@@ -30,6 +30,7 @@ ALIKE, APART = 1e-3, 8.0
 """Poles that differ by this share are in one circle, if others are so many times further away."""
 ROUNDED = 64 * np.finfo(float).eps  # A function near a pole is known to this of the pole.
 CLOSER = 16.0  # Poles in one circle that lie closer than this part of their width have their own.
+TOLD = 32.0  # Poles that differ by so many times their errors are one: between, f has no digits.
 MOST = 1 << 21  # So many numbers are computed at a time.
 
 
@@ -62,22 +63,20 @@ class Circles(NamedTuple):
 
     @property
     def told_apart(self) -> list[Index]:
-        """Which poles are one: those of the innermost circles."""
+        """Which poles are one, those of the innermost circles."""
         return [one for k, one in enumerate(self.members) if k not in self.parent]
 
     def some(self, which: Index) -> Circles:
         """Return some of them."""
-        members = [self.members[k] for k in which]
-        return Circles(
-            self.center[which], self.radius[which], self.points[which], members, self.parent[which]
-        )
+        arrays = self.center[which], self.radius[which], self.points[which]
+        return Circles(*arrays, [self.members[k] for k in which], self.parent[which])
 
 
 def on_a_line(pole: Real, error: Real, beyond: float) -> Circles:
     """Draw circles around real poles, in order, the next of which is beyond."""
     gap = np.concatenate([[np.inf], np.diff(pole), [beyond - pole[-1:].sum()]])[: len(pole) + 1]
     size = np.maximum(np.abs(pole[1:]), np.abs(pole[:-1]))
-    one = gap[1:-1] <= 4 * (error[1:] + error[:-1])  # not told apart
+    one = gap[1:-1] <= TOLD * (error[1:] + error[:-1])  # not told apart
     inside = np.concatenate([[np.inf], np.where(one, 0.0, gap[1:-1]), [np.inf]])[: len(gap)]
     found = _apart(gap, inside, (0, len(pole)), ALIKE * size) if len(pole) else []
     parent = [-1] * len(found)

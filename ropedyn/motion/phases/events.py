@@ -142,8 +142,7 @@ def solve_events(run: Run, *, whole: bool = False) -> History:
 def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
     """Return the motion and the error that modes and rounding cause, as its first look.
 
-    It is followed once more, with half the modes, or where there are all with its push nudged
-    and other rounding.
+    It is followed once more, with half the modes, or where there are all with other rounding.
     """
     least = run.tolerance or TOLERANCE
     modes = run.modes or MODES
