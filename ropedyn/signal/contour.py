@@ -108,11 +108,13 @@ def _apart(gap: Real, inside: Real, some: tuple[int, int], limit: Real) -> list[
 
 def _circles(pole: Real, members: list[Index], room: Real, parent: list[int]) -> Circles:
     """Draw circles around poles that have so much room."""
-    center = np.array([pole[one].mean() for one in members], dtype=np.float64)
-    spread = np.array([np.abs(pole[one] - at).max() for one, at in zip(members, center)])
+    several = np.array([len(one) > 1 for one in members], dtype=np.bool_)
+    center, spread = pole[[one[0] for one in members]], np.zeros(len(members))
+    for k in np.flatnonzero(several).tolist():
+        center[k] = pole[members[k]].mean()
+        spread[k] = np.abs(pole[members[k]] - center[k]).max()
     size = np.abs(center)
     room = np.where(size > 0, np.minimum(room, size), np.where(np.isfinite(room), room, 1.0))
-    several = np.array([len(one) > 1 for one in members], dtype=np.bool_)
     narrow = several | (room <= NARROW * size)
     radius = np.where(narrow, WIDE, RADIUS) * room
     radius[several] = np.maximum(radius, np.sqrt(spread * room))[several]
@@ -155,19 +157,21 @@ def _told(poles: int, circles: Circles, value: Real) -> Real:
         inner = np.flatnonzero(circles.parent == k)
         share = (1 / circles.radius[inner]) / (1 / circles.radius[inner]).sum()
         value[inner] += np.multiply.outer(share, value[k] - value[inner].sum(axis=0))
-    result = np.zeros((*value.shape[1:], poles))
-    for k, members in enumerate(circles.members):
-        if k not in circles.parent:
-            result[..., members] = value[k][..., None] / len(members)
+    result, size = np.zeros((*value.shape[1:], poles)), circles.size
+    innermost = np.setdiff1d(np.arange(len(size)), circles.parent)
+    members = np.concatenate([circles.members[k] for k in innermost])
+    each = np.repeat(innermost, size[innermost])
+    result[..., members] = np.moveaxis(value[each], 0, -1) / size[each]
     return result
 
 
 def _seen_too(pole: Real, circles: Circles, residue: Real) -> Real:
     """Return what residues at poles outside add to the sums in circles."""
     away = pole - circles.center[:, None]
-    for one, members in zip(away, circles.members):
-        one[members] = np.inf
-    share = (circles.radius[:, None] / away) ** circles.points[:, None]
+    away[np.repeat(np.arange(len(away)), circles.size), np.concatenate(circles.members)] = np.inf
+    share = np.square(np.square(np.square(circles.radius[:, None] / away)))  # of ALONE points
+    many = circles.points == TOGETHER
+    share[many] **= TOGETHER // ALONE
     return np.tensordot(share / (1 + share), residue, (1, residue.ndim - 1))
 
 

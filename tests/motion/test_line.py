@@ -96,6 +96,21 @@ def test_error_covers_random_chains_of_default_elements():
     assert found.count(None) <= 4
 
 
+def test_snapshots_under_few_samples_keep_their_digits():
+    """Half a hat before the first sample is e^(a h) times as large as what it is part of: 2e-5."""
+    parts = [rd.Dashpot(0.4, 5.0)]
+    scene = rd.Scene(rd.Rope(1.0, 0.4), tension=200.0, parts=parts)
+    model = scene.compile(elements=5, element="rigid")
+    few, shown, drive = np.array([0.0, 0.2]), np.array([0.07, 0.11, 0.1783]), ("z", 0.4)
+    seen = model.transient(few, drive=drive, force=np.array([1.5, 0.5]), snapshots=shown)
+    all_of_it = {"response": [("z", float(x)) for x in model.x], "tolerance": 1e-7}
+    time = np.unique(np.concatenate([few, shown]))
+    known = model.transient(time, drive=drive, force=1.5 - 5 * time, **all_of_it)
+    exact = known.value[:, np.searchsorted(time, shown)].T
+    assert known.cost.method == "line"
+    assert np.abs(seen.snapshot[:, :, 0] - exact).max() < 5e-9 * np.abs(exact).max()
+
+
 def test_rounding_of_many_rates_peaks_within_its_error():
     """A moment let go, 491 520 rates: noise at the end was 2.9 times what was said."""
     rope = rd.Rope(10.34, 0.0808, bending_stiffness=8210.727, rotary_inertia=2.45e-5)

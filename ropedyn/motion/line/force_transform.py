@@ -14,6 +14,7 @@ from ..modal.exponentials import ramp
 from .grid import MOST, ROUNDED, Grid, is_even
 
 ORDER = 16  # The highest of rates of one order over the lowest.
+WIDE = 0.5  # Half a hat that begins before the first sample is e^(a h) times as large as others.
 SPREAD = 7  # Terms of a jump spread over 1/omega.
 
 
@@ -22,9 +23,10 @@ def transform(force: Force, grid: Grid) -> Complex:
     if isinstance(force, Sum):
         return np.asarray(sum(transform(one, grid) for one in force.forces))
     if isinstance(force, Samples):
-        if grid.even and len(force.time) == len(grid.time):
+        few = grid.a * float(force.time[-1] - force.time[0]) > WIDE * (len(force.time) - 1)
+        if grid.even and len(force.time) == len(grid.time) and not few:
             return _of_samples(force, grid)
-        return (_of_hats if is_even(force.time, 0.0) else _of_corners)(force, grid)
+        return (_of_hats if is_even(force.time, 0.0) and not few else _of_corners)(force, grid)
     if isinstance(force, Chirp):
         return chirp.transform(force, grid.s, grid.begin, grid.begin + grid.period)
     turns = pieces(force, grid.begin)
