@@ -67,6 +67,7 @@ class States:
     drag: float  # of the modes that are left out, as proportional damping [1/s]
     ratio: float  # of their damping, as a ratio
     wrong: Real  # (k,) rounding of push and seen, relative
+    reach: Real  # (outputs, k) as much as what points yield lets modes move them, as seen
     # (outputs, inputs) sum of what left-out modes have as flexibility, in magnitude, at most;
     # infinite of internal forces, tips and moved ends
     left: Real
@@ -230,7 +231,7 @@ def states(
         for one in (one for one in circles.told_apart if eigenvalue[one].any()):
             eigenvalue[one] = eigenvalue[one].mean() + off[one]
     asked = UndampedResponses(model, component, list(inputs), list(outputs))
-    own, push, seen, rest = _parted_points(asked, eigenvalue, circles, beyond)
+    own, push, seen, reach, rest = _parted_points(asked, eigenvalue, circles, beyond)
     left = np.zeros(rest.shape)
     if np.isfinite(beyond):
         left = asked.bounded(lambda own: own.parted(eigenvalue, circles).rest).T
@@ -262,6 +263,7 @@ def states(
         drag=drag,
         ratio=float(ratio.max(initial=0.0)),
         wrong=(circles.rounding + np.divide(*mixed(eigenvalue, circles, sigma)))[own],
+        reach=reach,
         left=left,
     )
 
@@ -309,8 +311,8 @@ def _eigenvalues(
 
 def _parted_points(
     asked: UndampedResponses, eigenvalue: Real, circles: contour.Circles, beyond: float
-) -> tuple[Index, Real, Real, Real]:
-    """Return of each state its mode, its push and how it is seen, and the rest."""
+) -> tuple[Index, Real, Real, Real, Real]:
+    """Return of each state its mode, its push, how it is and may be seen, and the rest."""
     # each point once, what is pushed and watched there is one; others tell close modes apart
     probes = _probes(asked.model, asked.component) if (circles.size > 1).any() else []
     both = asked.drives, asked.responses
@@ -321,9 +323,9 @@ def _parted_points(
     every = dataclasses.replace(asked, drives=drives, responses=responses)
     parted = every.parted(eigenvalue, circles)
     rest = (parted.rest if np.isfinite(beyond) else parted.left).T
-    own, push, seen = _factored(parted, eigenvalue, circles, every)
+    own, push, seen, reach = _factored(parted, eigenvalue, circles, every)
     i, o = ([one.index(p) for p in given] for one, given in zip((drives, responses), both))
-    return own, push[:, i], seen[o], rest[np.ix_(o, i)]
+    return own, push[:, i], seen[o], reach[o], rest[np.ix_(o, i)]
 
 
 def _probes(model: Compiled, component: tuple[str, ...]) -> list[Point]:
@@ -337,8 +339,8 @@ def _probes(model: Compiled, component: tuple[str, ...]) -> list[Point]:
 
 def _factored(
     parted: Parted, eigenvalue: Real, circles: contour.Circles, asked: UndampedResponses
-) -> tuple[Index, Real, Real]:
-    """Return of each state its mode, its push and how it is seen."""
+) -> tuple[Index, Real, Real, Real]:
+    """Return of each state its mode, its push, and how it is and may be seen."""
     residue, most = parted.residue, parted.yields()
     inputs, outputs, _ = residue.shape
     same = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
@@ -368,7 +370,9 @@ def _factored(
     own = np.array(number, dtype=np.intp)
     push = np.array([one for one, _ in found], dtype=np.float64).reshape(len(own), inputs)
     seen = np.array([one for _, one in found], dtype=np.float64).reshape(len(own), outputs)
-    return own, push, seen.T
+    i = max(np.flatnonzero(twin >= 0), key=lambda i: most[i, twin[i]], default=None)
+    yields = np.zeros(outputs) if i is None else most[i] / np.sqrt(most[i, twin[i]] or np.inf)
+    return own, push, seen.T, np.divide.outer(yields, np.sqrt(np.abs(parted.soft[own])))
 
 
 def _shares(several: list[_Product], parts: Real, ranks: list[int]) -> list[Real]:

@@ -15,7 +15,7 @@ from ropedyn.motion.phases.events import follow
 from ropedyn.motion.request import STRAIGHT, Run
 
 ROPE = rd.Rope(1.0, 0.4, bending_stiffness=1.54)
-DRAG = rd.ViscousDamping(1.0)
+DRAG, CLAMPED = rd.ViscousDamping(1.0), ("clamped", "clamped")
 PUSH = {"drive": ("z", 0.25), "force": rd.Sine(50.0, 63.0)}
 
 
@@ -151,6 +151,22 @@ def test_spans_of_nearly_one_frequency_are_answered(apart):
     off = np.abs(by_events.value - linear.value)
     assert (off <= by_events.error + linear.error).all()
     assert by_events.error.max() < 1e-8 * np.abs(linear.value).max()
+
+
+@pytest.mark.parametrize("how", [{"elements": 16, "element": "rigid"}, {}])
+@pytest.mark.parametrize("part", [rd.Stop(0.5, 1e4, gap=1e-4), rd.Dashpot(0.5, 0.2, exponent=0.0)])
+def test_what_is_still_by_symmetry_does_not_refuse_the_rest(part, how):
+    """The middle of a symmetric rope does not turn: what it holds is rounding, to no digit."""
+    rope = rd.Rope(1.0, 0.5, bending_stiffness=2.0)
+    scene = rd.Scene(rope, tension=200.0, ends=CLAMPED, damping=DRAG, parts=[part])
+    time = np.linspace(0.0, 0.2, 201)
+    asked = {"drive": ("z", 0.5), "force": rd.Sine(1.0, 12.0)}
+    history = scene.compile(**how).transient(time, **asked, response=[("z", 0.25), ("beta", 0.5)])
+    assert history.cost.method == "events"
+    moved, still = np.abs(history.value).max(axis=1)
+    assert still < 1e-14 * moved
+    assert history.error[0].max() <= 1e-3 * moved
+    assert (np.abs(history.value[1]) <= 10 * history.error[1].max()).all()  # it is 0
 
 
 def test_modes_that_are_not_known_to_all_digits_count_in_the_error():

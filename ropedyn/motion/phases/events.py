@@ -18,6 +18,7 @@ from ..history import History, ended_by
 from ..modal.convolution import refuse_infinite
 from ..moved import against_spans
 from ..request import TOLERANCE, Run
+from ..undamped import ROUND
 from .components import Look, moving_components, rest, why_not_events
 from .energy import balance
 from .pieces import pieces
@@ -36,8 +37,8 @@ class Followed(NamedTuple):
     """A motion."""
 
     seen: list[Real]  # (points, t) of each look
-    # (2, points) of the modes that these are the sum of, and what rounding of shapes does to these
-    size: list[Real]
+    # (3, points) of the modes that these are the sum of, what rounding of shapes does to these, and
+    size: list[Real]  # of as much as these may move
     events: list[float]  # [s]
     whole: bool  # whether no mode is left out
     modes: int
@@ -47,14 +48,14 @@ class Followed(NamedTuple):
 def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> Followed:
     """Return what is seen, (points, t) of each look, of a motion whose push is nudged."""
     seen = [np.zeros((len(one.points), len(one.time))) for one in looks]
-    sizes = [np.zeros((2, len(one.points))) for one in looks]
+    sizes = [np.zeros((3, len(one.points))) for one in looks]
     events: list[float] = []
     whole, until = True, math.inf
     components = moving_components(run, looks, modes, other=nudge > 0)
     for one in components:
         walk, reached = PhaseWalk(one.system, OFF if nudge else 0.0), float(run.time[0])
         forces, st = [run.forces[k] for k in one.drives], one.system.states
-        shapes = np.stack([st.seen, st.wrong * st.seen])
+        shapes = np.stack([st.seen, st.wrong * st.seen, st.reach])
         try:
             for visit in walk.visits(rest(one, nudge), pieces(forces, run.time, 1 + nudge)):
                 is_last = visit.stop >= run.time[-1]
@@ -170,13 +171,14 @@ def _running(difference: Real) -> Real:
 
 def _rounding(found: Followed) -> Real:
     """Return what rounding leaves of modes that cancel, as where a point is held."""
-    size, shaped = found.size[0]
+    size, shaped, _ = found.size[0]
     return (ROUNDED * size + shaped)[:, None]
 
 
 def _allowed(found: Followed, tolerance: float) -> Real:
     """Return the error within a tolerance, (responses, 1); of what is still what makes it so."""
-    value, nothing = np.abs(found.seen[0]).max(axis=1, initial=0.0), HELD * found.size[0][0]
+    value, (size, _, reach) = np.abs(found.seen[0]).max(axis=1, initial=0.0), found.size[0]
+    nothing = np.maximum(HELD * size, ROUND * reach)
     return np.where(value > nothing, tolerance * value, nothing)[:, None]
 
 
