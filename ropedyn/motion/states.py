@@ -34,11 +34,15 @@ from ..scene.damping import having
 from ..scene.end import end_of
 from ..scene.parts.part import standing
 from ..signal import contour
-from .undamped import ROUND, Parted, UndampedResponses, losses_of, mixed
+from .undamped import Parted, UndampedResponses, losses_of, mixed
 
 LARGEST = 200  # All modes of a chain with so many are taken.
 FEW = 16  # Nodes whose damping is not as their mass are points of their own, at most.
 CIRCLED = 0.6  # Other circles are so much smaller.
+LOST, NONE = (
+    1e-3,
+    1e-9,
+)  # Of what rounding may be at most, products and shares of them below are none.
 KNOWN = 1e-13  # Above this share of what points yield rounding leaves digits.
 PROBES = 8  # Modes that lie close together are told apart at so many places.
 
@@ -350,19 +354,19 @@ def _factored(
     found: list[tuple[Real, Real]] = []
     for center, radius, members in zip(*circles.outer[:2], circles.outer.members):
         size = most / np.abs(parted.soft[members]).max()
-        whole, noise = residue[:, :, members].sum(axis=2), np.zeros_like(most)
-        if len(members) > 1:
+        whole = residue[:, :, members].sum(axis=2)
+        if len(members) > 1:  # where each product stands out of rounding
             others = np.abs(np.delete(residue, members, axis=2))
             away = np.abs(np.delete(eigenvalue, members) - center)
-            noise = contour.ROUNDED * (others @ (radius / away) + np.abs(whole))
-        several = _products(whole, len(members), size, twin, noise)
+            size = contour.ROUNDED * (others @ (radius / away) + np.abs(whole))
+        several = _products(whole, len(members), size, twin)
         if len(members) == 1 or not several:
             number += len(several) * members.tolist()
             found += [(one.push, one.seen) for one in several]
             continue
         groups = [group for group in one_each if group[0] in members]
         parts = np.array([residue[:, :, group].sum(axis=2) for group in groups])
-        shares = _shares(several, parts, [len(group) for group in groups])
+        shares = _shares(several, parts, size)
         push, seen = (np.array(one).T for one in list(zip(*several))[:2])
         for group, share in zip(groups, shares):
             number += [int(group[min(k, len(group) - 1)]) for k in range(len(share))]
@@ -375,7 +379,7 @@ def _factored(
     return own, push, seen.T, np.divide.outer(yields, np.sqrt(np.abs(parted.soft[own])))
 
 
-def _shares(several: list[_Product], parts: Real, ranks: list[int]) -> list[Real]:
+def _shares(several: list[_Product], parts: Real, size: Real) -> list[Real]:
     """Return what each mode is of the products that close modes have together, (.., products).
 
     These are all that they do, so only which mode does what is known the worse the closer they are.
@@ -385,17 +389,17 @@ def _shares(several: list[_Product], parts: Real, ranks: list[int]) -> list[Real
     seen = np.array([one.seen[o] for one in several]).T
     known = np.array([part[np.ix_(i, o)] for part in parts])
     own = np.linalg.solve(push, np.linalg.solve(seen, known.transpose(0, 2, 1)).transpose(0, 2, 1))
-    value, shape = np.linalg.eigh((own + own.transpose(0, 2, 1)) / 2)
-    root = shape * np.sqrt(np.maximum(value, 0.0))[:, None]
-    # a mode has one product, as far as rounding leaves it
-    first = [one[:, max(0, len(several) - rank) :] for one, rank in zip(root, ranks)]
-    for each in (first, list(root)):
-        total = sum(one @ one.T for one in each)
-        size, axes = np.linalg.eigh(total)
-        if size[0] > 0.5:
-            break
-    whole = axes / np.sqrt(np.maximum(size, 0.5)) @ axes.T
-    return [(whole @ one[:, ::-1]).T for one in each]
+    # by how far each product stands out of rounding: what does not takes nothing from others
+    weight = np.sqrt(
+        [abs(one.push[j] * one.seen[k]) / size[j, k] for one, j, k in zip(several, i, o)]
+    )
+    value, shape = np.linalg.eigh(weight[:, None] * (own + own.transpose(0, 2, 1)) / 2 * weight)
+    found = [
+        (axes[:, lost > NONE] * np.sqrt(lost[lost > NONE])).T[::-1] / weight
+        for lost, axes in zip(value, shape)
+    ]
+    total = sum(one.T @ one for one in found)
+    return [np.linalg.solve(np.linalg.cholesky(total), one.T).T for one in found]
 
 
 class _Product(NamedTuple):
@@ -406,15 +410,13 @@ class _Product(NamedTuple):
     at: tuple[int, int]  # where it is known best
 
 
-def _products(R: Real, most: int, size: Real, twin: Index, noise: Real) -> list[_Product]:
+def _products(R: Real, most: int, size: Real, twin: Index) -> list[_Product]:
     """Return the products that residues are the sum of, as many as are not rounding."""
     found: list[_Product] = []
     for _ in range(most):
         one = _largest(R, size, twin, alone=most == 1)
         if one is None or any(i == one.at[0] or o == one.at[1] for i, o in (f.at for f in found)):
             break  # rounding is left where a product was known best
-        if (np.abs(np.multiply.outer(one.push, one.seen)) <= noise).all():
-            break
         found.append(one)
         R = R - np.multiply.outer(one.push, one.seen)
     return found
@@ -434,7 +436,7 @@ def _largest(R: Real, size: Real, twin: Index, *, alone: bool) -> _Product | Non
         # of several shapes only points that are pushed and watched leave products of such
         own = [share[i, o] if o >= 0 and R[i, o] > 0 else 0.0 for i, o in enumerate(twin)]
         best = int(np.argmax(own))
-        if own[best] <= ROUND * share[i, o]:
+        if own[best] <= LOST:
             return None
         i, o = np.intp(best), twin[best]
     push, seen = _scaled(R, size, share, twin, (int(i), int(o)))

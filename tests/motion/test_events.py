@@ -136,6 +136,27 @@ def test_close_modes_with_one_product_keep_what_they_do_together(heavy, apart):
     assert (off <= by_events.error + linear.error).all()
 
 
+def test_products_that_are_rounding_take_nothing_from_close_modes():
+    """Four light resonators on a short beam: one lost its share to rounding, 1e-4 of the motion."""
+    hertz, mass = (3.6552853, 3.6559491, 3.6565796, 3.6569721), (5.01e-5, 4.34e-5, 3.41e-5, 2.56e-5)
+    alike = [rd.Resonator(0.5, m, f) for m, f in zip(mass, hertz)]
+    rope = rd.Rope(1.0, 0.5, bending_stiffness=0.02053305)
+    asked = {"drive": ("z", 0.5), "force": rd.Sine(1.0, 3.656), "response": ("z", 0.5)}
+
+    def moved(*part):
+        scene = rd.Scene(rope, tension=200.0, parts=[*alike, *part])
+        model = scene.compile(elements=2, element="rigid")
+        return model.transient(np.linspace(0.0, 10.0, 101), **asked)
+
+    linear, nothing = moved(), rd.NodeForce(0.5, lambda t, u, v: 0.0 * u)
+    for beside in (nothing, rd.Stop(0.5, 1e4, gap=1e6)):
+        found = moved(beside)
+        assert found.cost.method in ("collocation", "events")
+        off = np.abs(found.value - linear.value)
+        assert (off <= found.error + linear.error).all()
+        assert off.max() < 1e-11 * np.abs(linear.value).max()
+
+
 @pytest.mark.parametrize("apart", [1e-13, 1e-12, 1e-11])
 def test_spans_of_nearly_one_frequency_are_answered(apart):
     """Between modes that are so close the response has no digit left to tell them apart."""

@@ -156,9 +156,11 @@ def test_which_of_close_modes_is_which_is_as_wrong_as_is_said(heavy):
     assert len(close) == 2
     for k in (*close, *(close + 1)):
         product = np.outer(exact[:, k], exact[:, k])
-        off = np.abs(np.outer(own.push[k], own.seen[:, k]) - product).max() / np.abs(product).max()
-        assert off <= own.wrong[k]
-        assert own.wrong[k] <= 2e3 * max(off, 1e-14)  # measured: 7 to 800 times
+        same = own.square == np.unique(own.square)[k]  # rounding has states of its own
+        found = own.push[same].T @ own.seen[:, same].T
+        off, wrong = np.abs(found - product).max() / np.abs(product).max(), own.wrong[same].max()
+        assert off <= wrong
+        assert wrong <= 2e3 * max(off, 1e-14)  # measured: 7 to 800 times
     plain = scene.replace(damping=rd.ModalDamping(0.1)).compile(elements=n, element="rigid")
     assert states(plain, ("z",), points, points, modes=20).wrong.max() < 1e-11
 
