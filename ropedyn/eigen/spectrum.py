@@ -112,8 +112,8 @@ def apart(eigenvalue: Real, places: Index | int) -> Real:
 
 def parted(eigenvalue: Real, error: Real, most: int) -> tuple[Real, Real, float]:
     """Return at most so many of the lowest, their errors and the next, which is one with none."""
-    apart = np.diff(eigenvalue) > 4 * (error[1:] + error[:-1])
-    while 0 < most < len(eigenvalue) and not apart[most - 1]:
+    one = np.diff(eigenvalue) <= 4 * (error[1:] + error[:-1])
+    while 0 < most < len(eigenvalue) and one[most - 1]:
         most -= 1
     beyond = float(eigenvalue[most]) if len(eigenvalue) > most else math.inf
     return eigenvalue[:most], error[:most], beyond

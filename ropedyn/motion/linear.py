@@ -149,13 +149,13 @@ def _by_methods(run: Run) -> Moved:
             refused.append(f"{method}: {moved}")
             continue
         advice = ". A larger tolerance, more times or a smoother force help"
-        rounded = moved._replace(error=np.broadcast_to(moved.rounding, moved.value.shape))
-        if not (rounded.shares(run) <= tolerance).all():
-            advice = UNTOLD
         share = moved.shares(run)
         late = np.flatnonzero(~(share <= tolerance))
         if all(is_still(run, int(r)) for r in late):
             return moved
+        rounded = moved._replace(error=np.broadcast_to(moved.rounding, moved.value.shape))
+        if not (rounded.shares(run) <= tolerance).all():
+            advice = UNTOLD
         worst = int(np.nan_to_num(share, nan=np.inf).argmax())
         how = f"{moved.modes} modes" if method == "modal" else f"the line at {moved.lines} rates"
         refused.append(f"{how}: up to {share[worst]:.1e} of it for {run.responses[worst]}")

@@ -230,10 +230,7 @@ def states(
             raise SceneError(f"damping ratio must be one number or one for each mode, got {got}")
     circles = contour.on_a_line(eigenvalue, error, beyond**2)
     if other:
-        circles = circles._replace(radius=CIRCLED * circles.radius)
-        off, eigenvalue = error * (-1.0) ** np.arange(len(error)), eigenvalue.copy()
-        for one in (one for one in circles.told_apart if eigenvalue[one].any()):
-            eigenvalue[one] = eigenvalue[one].mean() + off[one]
+        eigenvalue, circles = _otherwise(eigenvalue, error, circles)
     asked = UndampedResponses(model, component, list(inputs), list(outputs))
     own, push, seen, reach, rest = _parted_points(asked, eigenvalue, circles, beyond)
     left = np.zeros(rest.shape)
@@ -313,6 +310,17 @@ def _eigenvalues(
     return value, math.sqrt(max(beyond, 0.0)), error
 
 
+def _otherwise(
+    eigenvalue: Real, error: Real, circles: contour.Circles
+) -> tuple[Real, contour.Circles]:
+    """Return eigenvalues as their errors let them be, and other circles around them."""
+    off, eigenvalue = error * (-1.0) ** np.arange(len(error)), eigenvalue.copy()
+    for one in circles.some(circles.innermost).members:
+        if eigenvalue[one].any():  # rigid motion stays such
+            eigenvalue[one] = eigenvalue[one].mean() + off[one]
+    return eigenvalue, circles._replace(radius=CIRCLED * circles.radius)
+
+
 def _parted_points(
     asked: UndampedResponses, eigenvalue: Real, circles: contour.Circles, beyond: float
 ) -> tuple[Index, Real, Real, Real, Real]:
@@ -349,7 +357,7 @@ def _factored(
     inputs, outputs, _ = residue.shape
     same = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
     twin = np.array(same, dtype=np.intp)
-    one_each = circles.told_apart
+    one_each = circles.some(circles.innermost).members
     number: list[int] = []
     found: list[tuple[Real, Real]] = []
     for center, radius, members in zip(*circles.outer[:2], circles.outer.members):
@@ -422,13 +430,9 @@ def _products(R: Real, most: int, size: Real, twin: Index) -> list[_Product]:
     return found
 
 
-def _share(R: Real, size: Real) -> Real:
-    return np.divide(np.abs(R), size, out=np.zeros_like(R), where=size > 0)
-
-
 def _largest(R: Real, size: Real, twin: Index, *, alone: bool) -> _Product | None:
     """Return the largest product in the residues of modes."""
-    share = _share(R, size)
+    share = np.divide(np.abs(R), size, out=np.zeros_like(R), where=size > 0)
     if not share.any():
         return None
     i, o = np.unravel_index(int(share.argmax()), share.shape)

@@ -131,7 +131,7 @@ def mixed(eigenvalue: Real, circles: contour.Circles, sigma: Real) -> tuple[Real
         share = MIXED / (gap / max(np.abs(value).max(), np.finfo(float).tiny) + MIXED)
         off[members] = (apart * share).max(axis=1)
         most[members] = max(float(rate.max()), np.finfo(float).tiny)
-    for one in circles.told_apart:
+    for one in circles.some(circles.innermost).members:
         off[one] = np.maximum(off[one], np.ptp(sigma[one]))
     return off, most
 

@@ -62,9 +62,9 @@ class Circles(NamedTuple):
         return np.array([len(one) for one in self.members], dtype=np.intp)
 
     @property
-    def told_apart(self) -> list[Index]:
-        """Which poles are one, those of the innermost circles."""
-        return [one for k, one in enumerate(self.members) if k not in self.parent]
+    def innermost(self) -> Index:
+        """Which have no others in them: their poles are one."""
+        return np.setdiff1d(np.arange(len(self.members)), self.parent)
 
     def some(self, which: Index) -> Circles:
         """Return some of them."""
@@ -158,8 +158,8 @@ def _told(poles: int, circles: Circles, value: Real) -> Real:
         share = (1 / circles.radius[inner]) / (1 / circles.radius[inner]).sum()
         value[inner] += np.multiply.outer(share, value[k] - value[inner].sum(axis=0))
     result, size = np.zeros((*value.shape[1:], poles)), circles.size
-    innermost = np.setdiff1d(np.arange(len(size)), circles.parent)
-    members = np.concatenate([circles.members[k] for k in innermost])
+    innermost = circles.innermost
+    members = np.concatenate(circles.some(innermost).members)
     each = np.repeat(innermost, size[innermost])
     result[..., members] = np.moveaxis(value[each], 0, -1) / size[each]
     return result
