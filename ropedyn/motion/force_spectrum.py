@@ -14,7 +14,7 @@ from .modal.exponentials import ramp
 def transform(force: Force, omega: Real, begin: float, end: float) -> Complex:
     """Return the integral of force e^(-i omega t) from begin to end, shape of omega [N s].
 
-    Of samples omega must be that of the lines of the record.
+    Of samples omega must be that of lines of the record, or of such as fold into them.
     """
     if isinstance(force, Sum):
         return np.asarray(sum(transform(one, omega, begin, end) for one in force.forces))
@@ -50,7 +50,8 @@ def _of_samples(force: Samples, omega: Real, begin: float, end: float) -> Comple
     """Each sample stands for a hat, h sinc^2(omega h/2) e^(-i omega t), those at the ends half."""
     time, sample = force.time, force.sample
     h = (end - begin) / (len(time) - 1)
-    hats = np.fft.rfft(sample) * np.sinc(omega * h / (2 * np.pi)) ** 2
+    line = np.rint(omega * h / (2 * np.pi) * len(sample)).astype(int) % len(sample)
+    hats = np.fft.fft(sample)[line] * np.sinc(omega * h / (2 * np.pi)) ** 2
     hats *= np.exp(-1j * omega * begin)
     turn = np.asarray(1j * omega * h, dtype=np.complex128)
     hats -= sample[0] * ramp(turn) * np.exp(-1j * omega * begin)

@@ -421,7 +421,8 @@ class History(Answer):
             segments=segments,
             window=window,
             band=band,
-            at_rest=order == 0,
+            order=order,
+            error=self.error,
         )
         return Measured(
             frequency=found.frequency,

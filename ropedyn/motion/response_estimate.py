@@ -40,9 +40,11 @@ def estimated(
     segments: int,
     window: str | None,
     band: Any,
-    at_rest: bool,
+    order: int,
+    error: Real,
 ) -> tuple[Estimate, tuple[str, ...]]:
     """Return responses per force, as `History.frf` asks for them, and notes on them."""
+    at_rest = order == 0
     sampled = partial(estimate, time, value, force, drive=drive, segments=segments)
     sampled = partial(sampled, window=window, band=band, at_rest=at_rest)
     ends = _at_the_end(time, value, force)
@@ -51,8 +53,9 @@ def estimated(
     own = _alone(law, drive, time)
     if check.count(segments, "segments", most=len(time)) == 1 and window in (None, "boxcar"):
         push = partial(transform, own, begin=float(time[0]), end=float(time[-1]))
-        found, folded = estimate_known(time, value, push, band=band, at_rest=at_rest)
-        return found, (EXACT, *_folds(time, folded), *ends)
+        how = {"error": error, "falls": 1 - order, "band": band, "at_rest": at_rest}
+        found, folded, missed = estimate_known(time, value, push, **how)
+        return found, (EXACT, *_folds(time, folded), *_misses(missed), *ends)
     found = sampled()
     if not isinstance(own, Samples):
         return found, (WEIGHTED, *ends)
@@ -77,8 +80,15 @@ def _folds(time: Real, folded: float) -> tuple[str, ...]:
     half = (len(time) - 1) / (2 * float(time[-1] - time[0]))
     return (
         f"motion: faster than half the rate of the times, {half:g} Hz, it folds into the lines: by "
-        f"about {folded:.2g} of the largest",
+        f"up to about {folded:.2g} of the largest",
     )
+
+
+def _misses(missed: float) -> tuple[str, ...]:
+    """Say how much the error of the motion may make of a line."""
+    if missed < LEFT:
+        return ()
+    return (f"motion: known to its error, up to {missed:.2g} of the largest in a line",)
 
 
 def is_struck_between(force: Force, time: Real) -> bool:

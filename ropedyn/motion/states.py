@@ -39,10 +39,8 @@ from .undamped import Parted, UndampedResponses, losses_of, mixed
 LARGEST = 200  # All modes of a chain with so many are taken.
 FEW = 16  # Nodes whose damping is not as their mass are points of their own, at most.
 CIRCLED = 0.6  # Other circles are so much smaller.
-LOST, NONE = (
-    1e-3,
-    1e-9,
-)  # Of what rounding may be at most, products and shares of them below are none.
+LOST, NONE = 1e-3, 1e-9
+"""Products below this part of what rounding may be are none, and shares below that of them."""
 KNOWN = 1e-13  # Above this share of what points yield rounding leaves digits.
 PROBES = 8  # Modes that lie close together are told apart at so many places.
 
@@ -239,17 +237,8 @@ def states(
     omega = np.sqrt(np.maximum(eigenvalue, 0.0))
     gamma, drag = closed.soften.real, closed.drag.real
     sigma = ratio * omega + (drag + gamma * eigenvalue) / 2
-    # internal forces are the elastic ones with what damps them; so is what moves with an end
-    forces = np.array([is_force(p) for p in outputs], dtype=np.bool_)
-    ends = np.array([is_end(p) for p in inputs], dtype=np.bool_)
-    at_once = np.logical_or.outer(forces, ends)
-    if gamma == 0:
-        at_once[:] = True
-    elif forces.any() and ends.any():
-        raise SceneError(
-            "response must not be an internal force where an end is moved and stiffness is damped: "
-            "a jump of the end would take an infinite force"
-        )
+    forces, ends = _stiff(inputs, outputs, gamma)
+    at_once = np.logical_or.outer(forces, ends) | (gamma == 0)
     return States(
         sigma=sigma[own],
         square=eigenvalue[own],
@@ -267,6 +256,21 @@ def states(
         reach=reach,
         left=left,
     )
+
+
+def _stiff(inputs: Sequence[Any], outputs: Sequence[Point], gamma: float) -> tuple[Flags, Flags]:
+    """Return which outputs are internal forces and which inputs are the motion of ends.
+
+    Those are the elastic ones with what damps them, and so is what moves with an end.
+    """
+    forces = np.array([is_force(p) for p in outputs], dtype=np.bool_)
+    ends = np.array([is_end(p) for p in inputs], dtype=np.bool_)
+    if gamma != 0 and forces.any() and ends.any():
+        raise SceneError(
+            "response must not be an internal force where an end is moved and stiffness is damped: "
+            "a jump of the end would take an infinite force"
+        )
+    return forces, ends
 
 
 def softens(model: Compiled, component: tuple[str, ...]) -> bool:

@@ -18,6 +18,12 @@ OVERLAPPING = 0.53
 Piersol (2010), section 11.5.2.2."""
 
 
+FOLDED = (1, 2, 3)  # So many rates above, what folds into the lines is added up.
+STEEPER = 2  # So many powers of the frequency more, a beam's responses fall than a string's.
+OVER = 4  # Responses may be so many times as large above half the rate as in the octave below it.
+DRIVEN = 0.1  # Lines with less of the largest force tell more of what folded into them.
+
+
 class Estimate(NamedTuple):
     """Responses per force."""
 
@@ -70,12 +76,19 @@ def estimate(
 
 
 def estimate_known(
-    time: Real, value: Real, push: Callable[[Real], Complex], *, band: Any, at_rest: bool
-) -> tuple[Estimate, float]:
+    time: Real,
+    value: Real,
+    push: Callable[[Real], Complex],
+    *,
+    error: Real,
+    falls: int,
+    band: Any,
+    at_rest: bool,
+) -> tuple[Estimate, float, float]:
     """Estimate responses (responses, t) per force whose transform at angular frequencies is known.
 
-    Of the whole record; and how much what lies above half the rate of the times may add to a line,
-    in parts of the largest: the motion in the last eighth of the lines, which falls on from there.
+    Of the whole record; with how much a line may have too much, in parts of the largest: of what
+    folds, where responses fall with such a power of the frequency, and of the error of the motion.
     """
     step, n = time_step(time), len(time)
     frequency: Real = np.fft.rfftfreq(n, step).astype(np.float64)
@@ -85,10 +98,32 @@ def estimate_known(
     if not pushed.any():
         raise SceneError("force must drive within the times, got 0")
     kept = _kept(frequency, np.abs(pushed) ** 2, _band(band), at_rest)
-    found = moved[:, kept] / pushed[kept]
-    above = np.abs(moved[:, -max(1, n // 16) :]).max(axis=1, keepdims=True)
-    size, most = np.abs(found).max(), np.max(above / np.abs(pushed[kept]))
-    return Estimate(frequency[kept], found, None, None), float(most / size) if size > 0 else 0.0
+    found, least = moved[:, kept] / pushed[kept], np.abs(pushed[kept])
+    folded = np.max(_above(frequency, moved, pushed, push, falls)[kept] / least)
+    missed = step * np.max(error.sum(axis=1)) / least.min()
+    size = np.abs(found).max() or np.inf
+    return Estimate(frequency[kept], found, None, None), float(folded / size), float(missed / size)
+
+
+def _above(
+    frequency: Real, moved: Complex, pushed: Complex, push: Callable[[Real], Complex], falls: int
+) -> Real:
+    """Guess what lies above half the rate of the times and folds into each line.
+
+    The force is known there, and responses fall on from the two octaves below.
+    """
+    half, size = frequency[-1], np.abs(pushed)
+    high = []
+    for least, most in ((half / 4, half / 2), (half / 2, half)):
+        within = (frequency >= least) & (frequency <= most)
+        driven = within & (size > 0) & (size >= DRIVEN * size[within].max(initial=0.0))
+        high.append(np.abs(moved[:, driven] / size[driven]).max(initial=0.0))
+    steep = np.log2(high[0] / high[1]) if min(high) > 0 else falls
+    fall = float(np.clip(steep, falls, falls + STEEPER))
+    total = np.zeros(frequency.shape)
+    for one in (k * 2 * half + sign * frequency for k in FOLDED for sign in (-1, 1)):
+        total += np.abs(push(2 * np.pi * one)) * (half / one) ** fall
+    return OVER * high[1] * total
 
 
 def _alone(force: Real, drive: int) -> Real:
