@@ -16,6 +16,7 @@ from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import CHANNELS, CONTINUOUS, TENSED, Chain
 from ..chain.compiled import MOST_STEPS, Compiled, least_of, once, part_of
+from ..signal.contour import TOLD
 from .closed import closed_count, closed_eigenvalues
 
 LARGEST_DENSE = 8_000
@@ -112,7 +113,7 @@ def apart(eigenvalue: Real, places: Index | int) -> Real:
 
 def parted(eigenvalue: Real, error: Real, most: int) -> tuple[Real, Real, float]:
     """Return at most so many of the lowest, their errors and the next, which is one with none."""
-    one = np.diff(eigenvalue) <= 4 * (error[1:] + error[:-1])
+    one = np.diff(eigenvalue) <= TOLD * (error[1:] + error[:-1])
     while 0 < most < len(eigenvalue) and one[most - 1]:
         most -= 1
     beyond = float(eigenvalue[most]) if len(eigenvalue) > most else math.inf

@@ -361,28 +361,30 @@ def _factored(
     inputs, outputs, _ = residue.shape
     same = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
     twin = np.array(same, dtype=np.intp)
-    one_each = circles.some(circles.innermost).members
+    one_each = circles.some(circles.innermost)
     number: list[int] = []
     found: list[tuple[Real, Real]] = []
     for center, radius, members in zip(*circles.outer[:2], circles.outer.members):
         size = most / np.abs(parted.soft[members]).max()
         whole = residue[:, :, members].sum(axis=2)
         if len(members) > 1:  # where each product stands out of rounding
-            others = np.abs(np.delete(residue, members, axis=2))
-            away = np.abs(np.delete(eigenvalue, members) - center)
-            size = contour.ROUNDED * (others @ (radius / away) + np.abs(whole))
+            size = _rounded(residue, eigenvalue, members, (center, radius))
         several = _products(whole, len(members), size, twin)
         if len(members) == 1 or not several:
             number += len(several) * members.tolist()
             found += [(one.push, one.seen) for one in several]
             continue
-        groups = [group for group in one_each if group[0] in members]
-        parts = np.array([residue[:, :, group].sum(axis=2) for group in groups])
-        shares = _shares(several, parts, size)
-        push, seen = (np.array(one).T for one in list(zip(*several))[:2])
-        for group, share in zip(groups, shares):
-            number += [int(group[min(k, len(group) - 1)]) for k in range(len(share))]
-            found += [(push @ one, seen @ one) for one in share]
+        inner = one_each.some(np.flatnonzero([g[0] in members for g in one_each.members]))
+        parts = [
+            _Part(
+                residue[:, :, group].sum(axis=2),
+                _rounded(residue, eigenvalue, group, (middle, near)) * np.abs(middle / near),
+            )
+            for middle, near, group in zip(*inner[:2], inner.members)
+        ]
+        for group, states in zip(inner.members, _told(several, parts, size, twin)):
+            number += [int(group[min(k, len(group) - 1)]) for k in range(len(states))]
+            found += states
     own = np.array(number, dtype=np.intp)
     push = np.array([one for one, _ in found], dtype=np.float64).reshape(len(own), inputs)
     seen = np.array([one for _, one in found], dtype=np.float64).reshape(len(own), outputs)
@@ -391,27 +393,93 @@ def _factored(
     return own, push, seen.T, np.divide.outer(yields, np.sqrt(np.abs(parted.soft[own])))
 
 
-def _shares(several: list[_Product], parts: Real, size: Real) -> list[Real]:
-    """Return what each mode is of the products that close modes have together, (.., products).
+def _rounded(residue: Real, eigenvalue: Real, members: Index, circle: tuple[float, float]) -> Real:
+    """Return what rounding makes of the sum of residues in a circle, (inputs, outputs)."""
+    center, radius = circle
+    others = np.abs(np.delete(residue, members, axis=2))
+    away = np.abs(np.delete(eigenvalue, members) - center)
+    whole = residue[:, :, members].sum(axis=2)
+    return np.asarray(contour.ROUNDED * (others @ (radius / away) + np.abs(whole)))
 
-    These are all that they do, so only which mode does what is known the worse the closer they are.
+
+class _Part(NamedTuple):
+    """Residues of one of close modes."""
+
+    residue: Real  # (inputs, outputs)
+    size: Real  # of rounding
+
+
+def _told(
+    several: list[_Product], parts: list[_Part], size: Real, twin: Index
+) -> list[list[tuple[Real, Real]]]:
+    """Return push and seen of the states of each of close modes.
+
+    The products that they have together are all that they do, so only which mode does what is known
+    the worse the closer they are. What is known better of a mode by itself is taken from that.
     """
+    push, seen = (np.array(one).T for one in list(zip(*several))[:2])
     i, o = (list(one) for one in zip(*(one.at for one in several)))
-    push = np.array([one.push[i] for one in several]).T
-    seen = np.array([one.seen[o] for one in several]).T
-    known = np.array([part[np.ix_(i, o)] for part in parts])
-    own = np.linalg.solve(push, np.linalg.solve(seen, known.transpose(0, 2, 1)).transpose(0, 2, 1))
-    # by how far each product stands out of rounding: what does not takes nothing from others
-    weight = np.sqrt(
-        [abs(one.push[j] * one.seen[k]) / size[j, k] for one, j, k in zip(several, i, o)]
-    )
-    value, shape = np.linalg.eigh(weight[:, None] * (own + own.transpose(0, 2, 1)) / 2 * weight)
-    found = [
-        (axes[:, lost > NONE] * np.sqrt(lost[lost > NONE])).T[::-1] / weight
-        for lost, axes in zip(value, shape)
+    weight = np.sqrt(np.abs(push[i].diagonal() * seen[o].diagonal()) / size[i, o])
+    stands = np.abs(push[i].diagonal())
+    rounded, missed = (size[:, o] / stands, size[i].T / stands), _missed(size, twin)
+    found: list[list[tuple[Real, Real]]] = []
+    for part in parts:
+        shares = _shares(part.residue[np.ix_(i, o)], push[i], seen[o], weight)
+        states = [(push @ one, seen @ one) for one in shares]
+        if states:
+            by = [m + one @ np.abs(shares[0]) for m, one in zip(missed, rounded)]
+            states[0] = _alone(part, states, (by[0], by[1]), twin)
+        found.append(states)
+    # what their sum is off by within rounding they know better
+    own = [np.array([np.linalg.solve(push[i], a[i]) for a, _ in states]) for states in found]
+    none = np.eye(len(several))
+    off = np.linalg.cholesky(sum(one.T @ one for one in own if len(one))) - none
+    off[np.abs(off) * np.multiply.outer(weight, weight) <= 1] = 0.0
+    more = [np.linalg.solve(none + off, one.T).T - one if len(one) else one for one in own]
+    return [
+        [(a + push @ d, b + seen @ d) for (a, b), d in zip(states, each)]
+        for states, each in zip(found, more)
     ]
-    total = sum(one.T @ one for one in found)
-    return [np.linalg.solve(np.linalg.cholesky(total), one.T).T for one in found]
+
+
+def _shares(part: Real, push: Real, seen: Real, weight: Real) -> Real:
+    """Return what a mode is of products, from what it and they are at their points.
+
+    By how far each product stands out of rounding: what does not takes nothing from others. Shape
+    (states, products).
+    """
+    own = np.linalg.solve(push, np.linalg.solve(seen, part.T).T)
+    lost, axes = np.linalg.eigh(weight[:, None] * (own + own.T) / 2 * weight)
+    return np.asarray((axes[:, lost > NONE] * np.sqrt(lost[lost > NONE])).T[::-1] / weight)
+
+
+def _missed(size: Real, twin: Index) -> tuple[Real, Real]:
+    """Return how much of push and seen a product may have that rounding hides."""
+    t = np.flatnonzero(twin >= 0)
+    root = np.sqrt(size[t, twin[t]])
+    push, seen = np.zeros(len(twin)), np.divide(size[t].T, root, where=root > 0, out=0 * size[t].T)
+    push[t] = root
+    return math.sqrt(LOST) * push, math.sqrt(LOST) * seen.max(axis=1)
+
+
+def _alone(
+    part: _Part, states: list[tuple[Real, Real]], rounded: tuple[Real, Real], twin: Index
+) -> tuple[Real, Real]:
+    """Return the first state of a mode by what its own residues know better of it."""
+    push, seen = states[0]
+    t = np.flatnonzero(twin >= 0)
+    i = int(t[np.argmax(push[t] ** 2 / part.size[t, twin[t]])])
+    o, here = twin[i], push[i]
+    left = part.residue - sum(np.multiply.outer(a, b) for a, b in states)
+    half = left[i, o] / (2 * here)
+    more = (left[:, o] - push * half) / here, (left[i] - seen * half) / here
+    lost = part.size[:, o] / np.abs(here), part.size[i] / np.abs(here)
+    a, b = (
+        x * np.divide(r**2, r**2 + w**2, out=np.zeros_like(x), where=r > 0)
+        for x, r, w in zip(more, rounded, lost)
+    )
+    a[t] = b[twin[t]] = (a[t] + b[twin[t]]) / 2
+    return push + a, seen + b
 
 
 class _Product(NamedTuple):

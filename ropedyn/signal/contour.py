@@ -30,7 +30,7 @@ ALIKE, APART = 1e-3, 8.0
 """Poles that differ by this share are in one circle, if others are so many times further away."""
 ROUNDED = 64 * np.finfo(float).eps  # A function near a pole is known to this of the pole.
 CLOSER = 16.0  # Poles in one circle that lie closer than this part of their width have their own.
-TOLD = 32.0  # Poles that differ by so many times their errors are one: between, f has no digits.
+TOLD = 384.0  # Poles that differ by so many times their errors are one: between, f has no digits.
 MOST = 1 << 21  # So many numbers are computed at a time.
 
 

@@ -352,6 +352,23 @@ def test_what_is_slow_to_settle_is_seen_behind_what_is_fast(force):
     assert (off <= said).all()
 
 
+@pytest.mark.parametrize("unit", [1e-9, 1e-6, 1e9])
+def test_friction_slips_alike_in_every_unit_of_time(unit):
+    """What counts as slow is so beside the period: of one second it was 4 times off at 1e-6 Hz."""
+
+    def steady(q):
+        damping = rd.RayleighDamping(1.853 * q, 0.009874 / q)
+        friction = rd.Dashpot(0.5, 0.008854, exponent=0.0)
+        scene = rd.Scene(rd.Rope(1.0, q**-2), tension=4.0, damping=damping, parts=[friction])
+        model = scene.compile(elements=4, element="rigid")
+        return model.stepped_sine([0.9 * q, 1.5 * q], drive=("z", 0.5), amplitude=0.012)
+
+    found, plain = steady(unit), steady(1.0)
+    off = np.abs(found.value - plain.value)
+    assert (off <= plain.rounding_error * np.abs(plain.value)).all()
+    assert found.stable.all()
+
+
 @pytest.mark.parametrize(("force", "method"), [(0.1, "events"), (5.0, "balance")])
 def test_ratios_of_modes_stand_beside_friction(force, method):
     """As drag that is the same for each mode; friction was called a dashpot, and refused."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
@@ -101,13 +102,19 @@ class PhasesGoOn:
         }
         alike = [[law[0] == points[k][0] for law in one.system.laws.points] for k in self.mine]
         self.alike = np.array(alike).reshape(len(self.mine), -1)
-        self.walk = PhaseWalk(one.system)
+        self.walk: PhaseWalk | None = None
         self.now = rest(one, 0.0)
         self.mode: tuple[int, ...] | None = None
 
     def disturb(self, speed: Real) -> None:
         """Let the modes move faster by these, (k,)."""
         self.now = self.now._replace(v=self.now.v + speed)
+
+    def _over(self, span: float) -> PhaseWalk:
+        """Return the walk over such a time, of which what is slow and what is at once are parts."""
+        if self.walk is None or self.walk.system.span != span:
+            self.walk = PhaseWalk(dataclasses.replace(self.one.system, span=span))
+        return self.walk
 
     def window(self, frequency: float, periods: range) -> MeanAmplitudes:
         """Follow some periods."""
@@ -118,7 +125,7 @@ class PhasesGoOn:
         value = np.zeros((own + states.modes, number))
         slips = set[int]()
         last: Visit | None = None
-        for visit in self.walk.visits(self.now, pieces(force, time), self.mode):
+        for visit in self._over(float(time[-1])).visits(self.now, pieces(force, time), self.mode):
             i, j = np.searchsorted(time[:-1], [visit.start, visit.stop])
             course = visit.outputs.some(self.rows).beside(
                 visit.state().some(slice(0, states.modes))
