@@ -238,6 +238,7 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
     most_steps = max(MOST_STEPS, RUNS * count)
     runs = Runs()
     laws = CoreActing.of(run.model)
+    sharp = any(one.is_sharp for one in laws.acting)
     while True:
         more = _finer(run, laws, count)
         stepped = Stepped(run, laws, count, tolerance)
@@ -254,7 +255,7 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
             continue
         if coarse is not None:
             before = coarse[1]
-            both = runs.apart(found.value, before.value, FALLS)
+            both = runs.apart(found.value, before.value, FALLS, sharp=sharp)
             known = found._replace(error=found.error + TIMES * both)
             free, held = stepped.free, stepped.held
             most = allowed(found.value, tolerance, run.responses, driven=free, held=held)[:, None]

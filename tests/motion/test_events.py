@@ -159,7 +159,7 @@ def test_products_that_are_rounding_take_nothing_from_close_modes():
 
 @pytest.mark.parametrize("seed", range(8))
 def test_resonators_on_two_points_are_told_apart(seed):
-    """What one of them adds to the shape of another is little beside them all, not in the motion."""
+    """What one adds to the shape of another is little beside them all, not in the motion."""
     rng = np.random.default_rng(seed)
     middle, mass = 20.0 * 2 ** rng.uniform(-1, 1), 10.0 ** rng.uniform(-7, -1)
     alike = [

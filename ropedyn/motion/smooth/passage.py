@@ -20,6 +20,7 @@ BLOCK = 1 << 18  # So many numbers of states are kept at a time,
 ROWS = 4096  # and how so many places within a step are seen.
 TIMES, MORE = 3.0, 12.0  # The finer of two runs is off by so many times their distance at most, or
 # by so many over what half the step divides errors by, where that is little.
+SAME = 1e-9  # Runs that are apart by less than this part of the largest value do not differ yet.
 FORGETS = 4.0  # What runs before were apart counts, this much less with each half of the step.
 SOON = 1e-15  # What breaks within this part of a run does so when it begins.
 SNAP = 1e-9  # Times closer to the end of a step than this part of it are there.
@@ -87,11 +88,15 @@ class Runs:
     def __init__(self) -> None:
         self.kept: Real | float = np.inf
 
-    def apart(self, found: Real, before: Real, falls: float) -> Real:
+    def apart(self, found: Real, before: Real, falls: float, *, sharp: bool) -> Real:
         """Return it, as found (outputs, t); half the step divides errors by `falls` at least."""
-        # where velocities turn or contact begins, two runs may agree by chance
+        # where velocities turn or contact begins, two runs may agree by chance, for a while too:
+        # of laws that are sharp, from where they differ on, the largest of all times counts
         last = self.kept / falls if np.isfinite(falls) else 0.0
         now = np.maximum.accumulate(np.abs(found - before), axis=1)
+        if sharp:
+            differ = now > SAME * np.abs(found).max(axis=1, initial=0.0)[:, None]
+            now = np.where(differ, now[:, -1:], now)
         self.kept = np.maximum(now, np.where(np.isfinite(self.kept), self.kept, 0.0) / FORGETS)
         return np.maximum(now, last)
 

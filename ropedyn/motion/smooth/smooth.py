@@ -30,7 +30,6 @@ from ..coupled.steps import CoupledPassage
 from ..coupled.system import CoupledSystem, moving_together, refuse_points, tension_of
 from ..history import History, ended_by
 from ..linear import solve_linear
-from ..modal.superposition import sizes
 from ..moved import against_spans, of_kinds
 from ..request import TOLERANCE, Run
 from ..states import LARGEST, softens, without_dashpots
@@ -174,10 +173,11 @@ def agree(
     passage: type[LawPassage] = LawPassage,
 ) -> Agreed:
     """Halve the steps until two runs agree within the tolerance, and return the finer."""
-    linear, h, time = system.without_laws(), system.first_step, system.looks[0].time
-    driven = np.abs(linear[0]).max(axis=1, initial=0.0)
+    time, (system, own) = system.looks[0].time, system.looking_between()
+    linear, h, every = system.without_laws(), system.first_step, system.looks[0].time
+    driven = np.abs(linear[0][:, own]).max(axis=1, initial=0.0)
     span, worst = float(system.time[-1] - system.time[0]), np.inf
-    coarse: list[Real] | None = None
+    coarse: Real | None = None
     last: Agreed | None = None
     runs, bent = Runs(), np.zeros(0)
     stages = hard = 0
@@ -189,7 +189,8 @@ def agree(
             last.error = passed.error
             return last
         stages += passed.stages
-        looked = system.told([own + more for own, more in zip(linear, passed.looked)])
+        between, *looked = system.told([one + more for one, more in zip(linear, passed.looked)])
+        looked = [between[:, own], *looked]
         found = Agreed(
             looked,
             np.full(looked[0].shape, np.inf),
@@ -207,8 +208,11 @@ def agree(
             most = allowed(looked[0], tolerance, watched, driven=driven, held=held, rests=rests)
             bends = (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
             falls = BENT_FALLS if bends else system.falls
-            wrong = reach(falls) * runs.apart(looked[0], coarse[0], falls)
-            found.step_error = wrong + rounding(looked[0], time)
+            wrong = runs.apart(between, coarse, falls, sharp=system.is_sharp)
+            # of the step that is longer at a time, what came within it
+            soon = np.searchsorted(every, time + system.finer * h, side="right") - 1
+            found.step_error = reach(falls) * wrong[:, soon] + rounding(looked[0], time)
+            found.step_error += system.undamped(h)[:, None]
             worst = tolerance * float((found.step_error / most[:, None]).max(initial=0.0))
             if worst <= tolerance:
                 return _cancelled(found, system, tolerance, held)
@@ -216,7 +220,7 @@ def agree(
         if passed.error is not None and (passed.settles or hard > HARD):
             return found
         last = found if passed.error is None else None
-        coarse, bent = looked if passed.error is None else None, passed.bent
+        coarse, bent = between if passed.error is None else None, passed.bent
         h /= system.finer
         if span / h > MOST_STEPS:
             found.error = SolveError(
@@ -228,10 +232,7 @@ def agree(
 
 def _cancelled(found: Agreed, system: LawSystem, tolerance: float, held: Flags) -> Agreed:
     """Add what rounding leaves of modes that cancel, as where motion has hardly begun."""
-    look, size = system.looks[0], np.zeros(len(found.looked[0]))
-    for one, push in zip(system.driven, system.pushes):
-        each = sizes(one, 0, push, system.time, look.order)
-        size += each[look.output].sum(axis=1)[: len(size)]
+    size = system.sizes().sum(axis=1)
     found.step_error = found.step_error + ROUNDING * size[:, None]
     # what moves less is held
     most = np.maximum(np.abs(found.looked[0]).max(axis=1, initial=0.0), NOTHING * size)
