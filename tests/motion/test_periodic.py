@@ -565,3 +565,25 @@ def test_harmonics_of_stability_reach_as_far_as_any_point_answers(loud):
     transfer = SimpleNamespace(at=lambda omega: H)
     balance = SimpleNamespace(harmonics=15, points=2, transfer=transfer)
     assert _least(balance, np.ones(1), np.zeros(1), 1.0) == max(FEWEST, loud + 1)
+
+
+def test_a_curve_that_is_reached_from_both_ends_is_told_once():
+    """Where it passes the highest frequency it is known as its steps are, and was taken for two."""
+    length = 0.44123184136259597
+    scene = rd.Scene(
+        rd.Rope(length, 0.08456227493125028),
+        tension=671.5713536266434,
+        ends=("clamped", rd.End(z="free")),
+        damping=rd.RayleighDamping(114.40729709854799, 0.0),
+        parts=[rd.Stop(2 * length / 3, 66217.67175707979, gap=0.0, side=-1)],
+    )
+    found = scene.compile(elements=3, element="rigid").stepped_sine(
+        [45.27420581, 97.64638535],
+        branches=True,
+        drive=("z", length / 3),
+        amplitude=0.45,
+        response=("z", length),
+    )
+    # a hump of two folds, between them three motions
+    assert len(found) == 3
+    assert (np.diff(np.sort(found.folds)) > found.fold_error.max()).all()

@@ -167,7 +167,10 @@ def refuse_points(
     model: Compiled, places: Sequence[Any], outputs: Sequence[Point], order: int
 ) -> None:
     """Refuse what amplitudes of modes do not tell."""
-    why = "where steps follow all modes of a chain: the tension varies, or energy is asked for"
+    why = (
+        "where steps follow all modes of a chain, as they do where the tension varies, energy is "
+        "asked for, or steady friction slips that is not followed from event to event"
+    )
     if model.element == "continuous":
         raise SceneError(f"elements must be given {why}, such as compile(elements=64)")
     if model.element == "difference" and "beta" in model.coordinates:

@@ -187,9 +187,13 @@ def traced(driven: Driven, balance: HarmonicBalance) -> list[list[SteadyState]]:
     f = np.unique(driven.asked.frequency)
     up = _trace(driven, balance, f, 1)
     x = at_rest(driven, balance, float(f[-1]))
-    ends = [s.place.x for s in up if s.kind == "asked" and s.place.p == 2 * np.pi * f[-1]]
-    if any(np.linalg.norm(x - end) <= SAME * np.linalg.norm(x) for end in ends):
-        return [up]
+    near = [s.place for s in up if s.kind == "asked" and s.place.p == 2 * np.pi * f[-1]]
+    if near:  # which are as near as steps of a branch are
+        at, omega = np.array([one.x for one in near]), np.array([one.p for one in near])
+        ends, known = by_frequency(driven, balance).settled(at, omega)
+        apart = np.linalg.norm(ends - x, axis=1)
+        if (known & (apart <= SAME * np.linalg.norm(x))).any():
+            return [up]
     return [up, _trace(driven, balance, f, -1)]
 
 
