@@ -11,12 +11,13 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from ..base.array import Complex, Real
+from ..base.errors import SolveError
 from ..chain import tip
 from ..chain.compiled import Compiled
 from ..chain.port import Point, is_force, moving
 from ..response.modal_sum import shift_of, undamped_factors
 from ..response.moved_end import is_end, moves_ends
-from ..response.question import Question
+from ..response.question import OnResonance, Question
 from ..response.solvers import SOLVERS
 from ..scene.damping import INERTIA, having
 from ..scene.parts.broken_wire import BrokenWire
@@ -69,7 +70,13 @@ class UndampedResponses:
         hertz = np.sqrt(np.abs(factor[INERTIA])) / (2 * np.pi)
         asked = tip.spread(model, self.responses)
         question = Question(model, self.component, hertz, factor, self.drives, asked, 1)
-        value, _ = moves_ends(SOLVERS["sweep"])(question)
+        try:
+            value, _ = moves_ends(SOLVERS["sweep"])(question)
+        except OnResonance as refusal:
+            raise SolveError(
+                f"modes of ({', '.join(self.component)}) at {refusal.frequency:.9g} Hz lie too "
+                "close together for rounding to tell what each of them does"
+            ) from None
         if any(map(tip.is_tip, self.responses)):
             value = tip.gather(model, self.responses, factor, value)
         return value

@@ -6,6 +6,7 @@ import pytest
 
 import ropedyn as rd
 from ropedyn.motion.states import states, without_dashpots
+from ropedyn.signal import contour
 
 ROPE = rd.Rope(1.0, 0.4, bending_stiffness=1.54)
 POINTS = [("z", 0.3), ("z", 0.5), ("z", 0.71)]
@@ -214,3 +215,25 @@ def test_damping_that_couples_modes_is_refused():
     model = tensed(damping=rd.StiffnessDamping(1e-4)).compile()
     with pytest.raises(rd.SceneError, match="damping must leave undamped modes uncoupled"):
         found(model, 10)
+
+
+@pytest.mark.parametrize("apart", [6e-15, 4e-14, 2e-13, 1e-12])
+def test_spans_of_nearly_one_length_have_states(apart, monkeypatch):
+    """Frequencies 4 to 300 of their errors apart were told apart, and then lost in rounding."""
+    scene = rd.Scene(rd.Rope(2.0, 0.1), tension=10.0, parts=[rd.Support(1.0 + apart)])
+    model, points = scene.compile(), [("z", 0.4), ("z", 1.4)]
+    for modes in (3, 4, 9, 10):
+        found = states(model, ("z",), points, points, modes=modes)
+        number = np.rint(np.sqrt(found.square) / (10 * np.pi)).astype(int)
+        for k in np.unique(number):
+            # spans of mass 0.1, and nothing beside the support; of two modes one may be left out
+            both = np.einsum("os,si->oi", found.seen[:, number == k], found.push[number == k])
+            exact = np.diag([20.0 * np.sin(0.4 * np.pi * k) ** 2] * 2)
+            whole = modes % 2 == 0 or k < number.max()
+            known = 1e-9 + (0.0 if whole else 20.0 * found.wrong[number == k].max())
+            kept = np.ones(2, dtype=bool) if whole else np.diag(both) > 1.0
+            assert np.abs(both - exact)[np.ix_(kept, kept)].max(initial=0.0) < known
+    monkeypatch.setattr(contour, "TOLD", 1.0)
+    if apart == 2e-13:
+        with pytest.raises(rd.SolveError, match=r"modes of \(z\) at \S+ Hz lie too close together"):
+            states(model, ("z",), points, points, modes=10)
