@@ -234,6 +234,6 @@ def test_spans_of_nearly_one_length_have_states(apart, monkeypatch):
             kept = np.ones(2, dtype=bool) if whole else np.diag(both) > 1.0
             assert np.abs(both - exact)[np.ix_(kept, kept)].max(initial=0.0) < known
     monkeypatch.setattr(contour, "TOLD", 1.0)
-    if apart == 2e-13:
+    if apart == 4e-14:
         with pytest.raises(rd.SolveError, match=r"modes of \(z\) at \S+ Hz lie too close together"):
             states(model, ("z",), points, points, modes=10)

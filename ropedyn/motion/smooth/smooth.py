@@ -223,9 +223,10 @@ def agree(
         coarse, bent = between if passed.error is None else None, passed.bent
         h /= system.finer
         if span / h > MOST_STEPS:
+            off = f"the error is {worst:.3g}" if worst <= 1 else "no digit of the motion is known"
             found.error = SolveError(
                 f"tolerance {tolerance:g} needs more than {MOST_STEPS} steps: with "
-                f"{round(span / h / system.finer)} the error is {worst:.3g}"
+                f"{round(span / h / system.finer)} {off}"
             )
             return found
 
