@@ -6,8 +6,8 @@
 
 `now` and `late` are the flexibility of the modes that are left out: damped stiffness lets it relax.
 Residues are means over circles around the eigenvalues (see contour.py), so that nothing but H is
-asked for, and each is a product push times seen. Dashpots of single points are left out of the
-modes: they are laws of these points, as stops and friction are.
+asked for, and each is a product push times seen (products.py). Dashpots of single points are left
+out of the modes: they are laws of these points, as stops and friction are.
 """
 
 from __future__ import annotations
@@ -34,14 +34,12 @@ from ..scene.damping import having
 from ..scene.end import end_of
 from ..scene.parts.part import standing
 from ..signal import contour
-from .undamped import Parted, UndampedResponses, losses_of, mixed
+from .products import factored
+from .undamped import UndampedResponses, losses_of, mixed
 
 LARGEST = 200  # All modes of a chain with so many are taken.
 FEW = 16  # Nodes whose damping is not as their mass are points of their own, at most.
 CIRCLED = 0.6  # Other circles are so much smaller.
-LOST, NONE = 1e-3, 1e-9
-"""Products below this part of what rounding may be are none, and shares below that of them."""
-KNOWN = 1e-13  # Above this share of what points yield rounding leaves digits.
 PROBES = 8  # Modes that lie close together are told apart at so many places.
 
 
@@ -215,7 +213,8 @@ def states(
     """Find the states of one component, without its dashpots of single points.
 
     Chains of at most `LARGEST` unknowns have all of their modes, others so many. `other` are as far
-    from these as rounding is from the truth: of other circles, with squares off by their errors.
+    from these as rounding is from the truth: of other circles, with squares off by their errors,
+    and other shapes of modes that are one.
     """
     model, _ = without_dashpots(model, component)
     closed = _damping(model, component)
@@ -230,7 +229,7 @@ def states(
     if other:
         eigenvalue, circles = _otherwise(eigenvalue, error, circles)
     asked = UndampedResponses(model, component, list(inputs), list(outputs))
-    own, push, seen, reach, rest = _parted_points(asked, eigenvalue, circles, beyond)
+    own, push, seen, reach, rest = _parted_points(asked, eigenvalue, circles, beyond, other=other)
     left = np.zeros(rest.shape)
     if np.isfinite(beyond):
         left = asked.bounded(lambda own: own.parted(eigenvalue, circles).rest).T
@@ -321,12 +320,17 @@ def _otherwise(
     off, eigenvalue = error * (-1.0) ** np.arange(len(error)), eigenvalue.copy()
     for one in circles.some(circles.innermost).members:
         if eigenvalue[one].any():  # rigid motion stays such
-            eigenvalue[one] = eigenvalue[one].mean() + off[one]
+            eigenvalue[one] += off[one]
     return eigenvalue, circles._replace(radius=CIRCLED * circles.radius)
 
 
 def _parted_points(
-    asked: UndampedResponses, eigenvalue: Real, circles: contour.Circles, beyond: float
+    asked: UndampedResponses,
+    eigenvalue: Real,
+    circles: contour.Circles,
+    beyond: float,
+    *,
+    other: bool,
 ) -> tuple[Index, Real, Real, Real, Real]:
     """Return of each state its mode, its push, how it is and may be seen, and the rest."""
     # each point once, what is pushed and watched there is one; others tell close modes apart
@@ -339,7 +343,9 @@ def _parted_points(
     every = dataclasses.replace(asked, drives=drives, responses=responses)
     parted = every.parted(eigenvalue, circles)
     rest = (parted.rest if np.isfinite(beyond) else parted.left).T
-    own, push, seen, reach = _factored(parted, eigenvalue, circles, every)
+    own, push, seen, reach = factored(
+        parted, eigenvalue, circles, (drives, responses), turned=other
+    )
     i, o = ([one.index(p) for p in given] for one, given in zip((drives, responses), both))
     return own, push[:, i], seen[o], reach[o], rest[np.ix_(o, i)]
 
@@ -348,197 +354,3 @@ def _probes(model: Compiled, component: tuple[str, ...]) -> list[Point]:
     """Return points spread along the rope."""
     at = spread(PROBES).tolist()
     return [(c, x * float(model.x[-1])) for c in component for x in at]
-
-
-# --- residues as products -----------------------------------------------------------------------
-
-
-def _factored(
-    parted: Parted, eigenvalue: Real, circles: contour.Circles, asked: UndampedResponses
-) -> tuple[Index, Real, Real, Real]:
-    """Return of each state its mode, its push, and how it is and may be seen."""
-    residue, most = parted.residue, parted.yields()
-    inputs, outputs, _ = residue.shape
-    same = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
-    twin = np.array(same, dtype=np.intp)
-    one_each = circles.some(circles.innermost)
-    number: list[int] = []
-    found: list[tuple[Real, Real]] = []
-    for center, radius, members in zip(*circles.outer[:2], circles.outer.members):
-        size = most / np.abs(parted.soft[members]).max()
-        whole = residue[:, :, members].sum(axis=2)
-        if len(members) > 1:  # where each product stands out of rounding
-            size = _rounded(residue, eigenvalue, members, (center, radius))
-        several = _products(whole, len(members), size, twin)
-        if len(members) == 1 or not several:
-            number += len(several) * members.tolist()
-            found += [(one.push, one.seen) for one in several]
-            continue
-        inner = one_each.some(np.flatnonzero([g[0] in members for g in one_each.members]))
-        parts = [
-            _Part(
-                residue[:, :, group].sum(axis=2),
-                _rounded(residue, eigenvalue, group, (middle, near)) * np.abs(middle / near),
-            )
-            for middle, near, group in zip(*inner[:2], inner.members)
-        ]
-        for group, states in zip(inner.members, _told(several, parts, size, twin)):
-            number += [int(group[min(k, len(group) - 1)]) for k in range(len(states))]
-            found += states
-    own = np.array(number, dtype=np.intp)
-    push = np.array([one for one, _ in found], dtype=np.float64).reshape(len(own), inputs)
-    seen = np.array([one for _, one in found], dtype=np.float64).reshape(len(own), outputs)
-    i = max(np.flatnonzero(twin >= 0), key=lambda i: most[i, twin[i]], default=None)
-    yields = np.zeros(outputs) if i is None else most[i] / np.sqrt(most[i, twin[i]] or np.inf)
-    return own, push, seen.T, np.divide.outer(yields, np.sqrt(np.abs(parted.soft[own])))
-
-
-def _rounded(residue: Real, eigenvalue: Real, members: Index, circle: tuple[float, float]) -> Real:
-    """Return what rounding makes of the sum of residues in a circle, (inputs, outputs)."""
-    center, radius = circle
-    others = np.abs(np.delete(residue, members, axis=2))
-    away = np.abs(np.delete(eigenvalue, members) - center)
-    whole = residue[:, :, members].sum(axis=2)
-    return np.asarray(contour.ROUNDED * (others @ (radius / away) + np.abs(whole)))
-
-
-class _Part(NamedTuple):
-    """Residues of one of close modes."""
-
-    residue: Real  # (inputs, outputs)
-    size: Real  # of rounding
-
-
-def _told(
-    several: list[_Product], parts: list[_Part], size: Real, twin: Index
-) -> list[list[tuple[Real, Real]]]:
-    """Return push and seen of the states of each of close modes.
-
-    The products that they have together are all that they do, so only which mode does what is known
-    the worse the closer they are. What is known better of a mode by itself is taken from that.
-    """
-    push, seen = (np.array(one).T for one in list(zip(*several))[:2])
-    i, o = (list(one) for one in zip(*(one.at for one in several)))
-    weight = np.sqrt(np.abs(push[i].diagonal() * seen[o].diagonal()) / size[i, o])
-    stands = np.abs(push[i].diagonal())
-    rounded, missed = (size[:, o] / stands, size[i].T / stands), _missed(size, twin)
-    found: list[list[tuple[Real, Real]]] = []
-    for part in parts:
-        shares = _shares(part.residue[np.ix_(i, o)], push[i], seen[o], weight)
-        states = [(push @ one, seen @ one) for one in shares]
-        if states:
-            by = [m + one @ np.abs(shares[0]) for m, one in zip(missed, rounded)]
-            states[0] = _alone(part, states, (by[0], by[1]), twin)
-        found.append(states)
-    # what their sum is off by within rounding they know better
-    own = [np.array([np.linalg.solve(push[i], a[i]) for a, _ in states]) for states in found]
-    none = np.eye(len(several))
-    off = np.linalg.cholesky(sum(one.T @ one for one in own if len(one))) - none
-    off[np.abs(off) * np.multiply.outer(weight, weight) <= 1] = 0.0
-    more = [np.linalg.solve(none + off, one.T).T - one if len(one) else one for one in own]
-    return [
-        [(a + push @ d, b + seen @ d) for (a, b), d in zip(states, each)]
-        for states, each in zip(found, more)
-    ]
-
-
-def _shares(part: Real, push: Real, seen: Real, weight: Real) -> Real:
-    """Return what a mode is of products, from what it and they are at their points.
-
-    By how far each product stands out of rounding: what does not takes nothing from others. Shape
-    (states, products).
-    """
-    own = np.linalg.solve(push, np.linalg.solve(seen, part.T).T)
-    lost, axes = np.linalg.eigh(weight[:, None] * (own + own.T) / 2 * weight)
-    return np.asarray((axes[:, lost > NONE] * np.sqrt(lost[lost > NONE])).T[::-1] / weight)
-
-
-def _missed(size: Real, twin: Index) -> tuple[Real, Real]:
-    """Return how much of push and seen a product may have that rounding hides."""
-    t = np.flatnonzero(twin >= 0)
-    root = np.sqrt(size[t, twin[t]])
-    push, seen = np.zeros(len(twin)), np.divide(size[t].T, root, where=root > 0, out=0 * size[t].T)
-    push[t] = root
-    return math.sqrt(LOST) * push, math.sqrt(LOST) * seen.max(axis=1)
-
-
-def _alone(
-    part: _Part, states: list[tuple[Real, Real]], rounded: tuple[Real, Real], twin: Index
-) -> tuple[Real, Real]:
-    """Return the first state of a mode by what its own residues know better of it."""
-    push, seen = states[0]
-    t = np.flatnonzero(twin >= 0)
-    i = int(t[np.argmax(push[t] ** 2 / part.size[t, twin[t]])])
-    o, here = twin[i], push[i]
-    left = part.residue - sum(np.multiply.outer(a, b) for a, b in states)
-    half = left[i, o] / (2 * here)
-    more = (left[:, o] - push * half) / here, (left[i] - seen * half) / here
-    lost = part.size[:, o] / np.abs(here), part.size[i] / np.abs(here)
-    a, b = (
-        x * np.divide(r**2, r**2 + w**2, out=np.zeros_like(x), where=r > 0)
-        for x, r, w in zip(more, rounded, lost)
-    )
-    a[t] = b[twin[t]] = (a[t] + b[twin[t]]) / 2
-    return push + a, seen + b
-
-
-class _Product(NamedTuple):
-    """Residues of a mode."""
-
-    push: Real  # (inputs,)
-    seen: Real  # (outputs,)
-    at: tuple[int, int]  # where it is known best
-
-
-def _products(R: Real, most: int, size: Real, twin: Index) -> list[_Product]:
-    """Return the products that residues are the sum of, as many as are not rounding."""
-    found: list[_Product] = []
-    for _ in range(most):
-        one = _largest(R, size, twin, alone=most == 1)
-        if one is None or any(i == one.at[0] or o == one.at[1] for i, o in (f.at for f in found)):
-            break  # rounding is left where a product was known best
-        found.append(one)
-        R = R - np.multiply.outer(one.push, one.seen)
-    return found
-
-
-def _largest(R: Real, size: Real, twin: Index, *, alone: bool) -> _Product | None:
-    """Return the largest product in the residues of modes."""
-    share = np.divide(np.abs(R), size, out=np.zeros_like(R), where=size > 0)
-    if not share.any():
-        return None
-    i, o = np.unravel_index(int(share.argmax()), share.shape)
-    if not alone:
-        # of several shapes only points that are pushed and watched leave products of such
-        own = [share[i, o] if o >= 0 and R[i, o] > 0 else 0.0 for i, o in enumerate(twin)]
-        best = int(np.argmax(own))
-        if own[best] <= LOST:
-            return None
-        i, o = np.intp(best), twin[best]
-    push, seen = _scaled(R, size, share, twin, (int(i), int(o)))
-    return _Product(push, seen, (int(i), int(o)))
-
-
-def _scaled(
-    R: Real, size: Real, share: Real, twin: Index, at: tuple[int, int]
-) -> tuple[Real, Real]:
-    """Return push and seen from a pivot: points move by what they are pushed with."""
-    i, o = at
-    root = np.sqrt(np.abs(R[at]))
-    push, seen = R[:, o] * (np.sign(R[at]) / root), R[i] / root
-    t = np.flatnonzero(twin >= 0)
-    if not len(t):
-        return push, seen
-    w = twin[t]
-    a, b = share[t, o], share[i, w]  # what has the larger share is known better
-    k = int(np.minimum(a, b).argmax())
-    if min(a[k], b[k]) > KNOWN:
-        one, other = push[t[k]], seen[w[k]]
-    else:  # none of them: as far as rounding moves those that move most
-        own = np.sqrt(np.maximum(size[t, w], np.finfo(float).tiny))
-        one, other = (np.max(np.abs(x) / own) for x in (push[t], seen[w]))
-    ratio = np.sqrt(np.abs(other / one)) if one and other else 1.0
-    push, seen = push * ratio, seen / ratio
-    known = np.divide(a**2, a**2 + b**2, out=np.full(len(t), 0.5), where=a + b > 0)
-    push[t] = seen[w] = seen[w] + (push[t] - seen[w]) * known
-    return push, seen

@@ -237,3 +237,19 @@ def test_spans_of_nearly_one_length_have_states(apart, monkeypatch):
     if apart == 4e-14:
         with pytest.raises(rd.SolveError, match=r"modes of \(z\) at \S+ Hz lie too close together"):
             states(model, ("z",), points, points, modes=10)
+
+
+@pytest.mark.parametrize("mass", [1e11, 1e13])
+def test_what_modes_that_are_one_do_together_is_known_to_what_others_say(mass):
+    """Across a mass that holds: shapes of either side alone pass nothing on, those of both do."""
+    scene = rd.Scene(rd.Rope(1.0, 0.5), tension=200.0, parts=[rd.PointMass(0.5, mass)])
+    model, points = scene.compile(elements=4, element="rigid"), [("z", 0.25), ("z", 0.75)]
+    found, other = (
+        states(model, ("z",), points, points, modes=9, other=which) for which in (False, True)
+    )
+    side = mp.mpf(0.125)
+    square = 1600 / side * (1 + mp.mpf(10) ** -6)
+    heavy, light = 1600 - (side + mp.mpf(mass)) * square, 1600 - side * square
+    exact = float(800**2 / (light * (light * heavy - 2 * 800**2)))
+    one, too = (each.at(1j * np.sqrt([float(square)]))[0, 1, 0].real for each in (found, other))
+    assert abs(one - exact) <= 2 * abs(one - too)
