@@ -185,8 +185,11 @@ def _alone(part: _Part, states: list[State], unknown: State, twin: Index) -> Sta
     push, seen = states[0]
     size = part.size * part.near
     t = np.flatnonzero(twin >= 0)
-    i = int(t[np.argmax(push[t] ** 2 / size[t, twin[t]])])
+    own, rounded = push[t] ** 2, size[t, twin[t]]
+    i = int(t[np.divide(own, rounded, out=np.zeros_like(own), where=rounded > 0).argmax()])
     o, here = twin[i], push[i]
+    if here == 0:
+        return states[0]
     left = part.residue - sum(np.multiply.outer(a, b) for a, b in states)
     half = left[i, o] / (2 * here)
     more = (left[:, o] - push * half) / here, (left[i] - seen * half) / here
