@@ -17,6 +17,7 @@ from ..acting import acting_laws, scene_laws
 from ..states import without_dashpots
 
 POWER, CALL = 0, 1  # Kinds of laws in the core's order.
+BESIDE, ASIDE = (-0.7, 0.0, 0.7), 1e-3  # Parts of a motion where slopes are looked at, and of them.
 SAME = 1e-9  # Values of a law that takes arrays are these parts of those one by one apart.
 
 
@@ -94,6 +95,27 @@ def takes_arrays(law: SmoothLaw, time: Real, size: Real) -> bool:
     except Exception:  # the law is asked again where it acts, and says there what is wrong
         return False
     return bool((wrong <= SAME * np.abs(each).max()).all())
+
+
+def slopes(law: SmoothLaw, time: Real, size: Real) -> tuple[float, float]:
+    """Return by how much a force changes at most with displacement and velocity [N/m, N s/m].
+
+    As far as a few motions within its size (3,) tell.
+    """
+    u, v, _ = size.tolist()
+    if law.call is None:
+        return 0.0, law.damping * law.exponent * v ** (law.exponent - 1)
+    at = [(t, x * u, y * v) for t in time[[0, -1]].tolist() for x in BESIDE for y in BESIDE]
+
+    def most(du: float, dv: float) -> float:
+        assert law.call is not None
+        ends = [[law.call(t, x + s * du, y + s * dv) for s in (-1, 1)] for t, x, y in at]
+        return float(np.abs(np.diff(np.array(ends, dtype=np.float64))).max()) / 2
+
+    try:
+        return most(ASIDE * u, 0.0) / (ASIDE * u or 1.0), most(0.0, ASIDE * v) / (ASIDE * v or 1.0)
+    except Exception:  # what is wrong is said where it acts
+        return 0.0, 0.0
 
 
 class LawFailure(NamedTuple):

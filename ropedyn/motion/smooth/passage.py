@@ -80,6 +80,7 @@ class Passed(NamedTuple):
     settles: bool = True  # whether Newton's method found the forces
     bent: Real = np.zeros(0)  # the highest degree of laws' forces in steps, relative, (laws,)
     largest: Real = np.zeros(0)  # forces of laws, (laws,)
+    size: Real = np.zeros((3, 0))  # of laws' displacements, velocities and forces, (3, laws)
 
 
 class Runs:
@@ -153,7 +154,7 @@ class LawPassage:
             force, state = forces[-1], motions[-1]
             progress(done / len(known))
         bent /= np.maximum(size[2], np.finfo(float).tiny)
-        return Passed(self.looked, float(system.time[-1]), done * STAGES, bent=bent)
+        return Passed(self.looked, float(system.time[-1]), done * STAGES, bent=bent, size=size)
 
     def _blocks(self, most: int) -> Iterator[Steps]:
         for whole in self.all_steps:

@@ -212,7 +212,7 @@ def agree(
             # of the step that is longer at a time, what came within it
             soon = np.searchsorted(every, time + system.finer * h, side="right") - 1
             found.step_error = reach(falls) * wrong[:, soon] + rounding(looked[0], time)
-            found.step_error += system.undamped(h)[:, None]
+            found.step_error += system.unmoved(h, passed.size)[:, None]
             worst = tolerance * float((found.step_error / most[:, None]).max(initial=0.0))
             if worst <= tolerance:
                 return _cancelled(found, system, tolerance, held)

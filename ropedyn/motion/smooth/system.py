@@ -18,7 +18,7 @@ from ..modal.superposition import sizes
 from ..request import Run
 from ..states import States, states
 from .collocation import Oscillating
-from .laws import PointLaw, SmoothLaw
+from .laws import PointLaw, SmoothLaw, slopes
 
 LEAST = 32  # A run has so many steps at least,
 PER_PERIOD = 4  # and a period of the lowest mode, and of what pushes, so many.
@@ -151,19 +151,24 @@ class LawSystem:
         ]
         return np.asarray(sum(each, np.zeros((look.output.stop - look.output.start, 1))))
 
-    def undamped(self, h: float) -> Real:
-        """Return what dashpots of points damp of all modes that steps are too long for, (o,).
+    def unmoved(self, h: float, size: Real) -> Real:
+        """Return how far laws change all modes that steps are too long for, first look, (o,).
 
-        Shorter ones see as little of them, up to a radian of each.
+        Their motion has such a size (3, laws). Shorter steps see as little of it, up to a radian of
+        each mode.
         """
-        if np.isfinite(self.beyond):
+        omega = np.sqrt(np.abs(self.modes.square))
+        fast = omega * h > 1
+        if np.isfinite(self.beyond) or not (fast.any() and size.size):
             return np.zeros(1)
-        dashpots = [abs(one.damping) if one.exponent == 1 else 0.0 for one in self.laws]
-        decay = self.modes.push[:, : len(self.laws)] ** 2 @ dashpots / 2
-        lost = np.minimum(1.0, decay * (self.time[-1] - self.time[0]))
-        lost[np.sqrt(np.abs(self.modes.square)) * h <= 1] = 0.0
-        size = self.sizes()
-        return np.asarray(size @ lost[: size.shape[1]])
+        each = [slopes(law, self.time, one) for law, one in zip(self.laws, size.T)]
+        stiff, damps = np.abs(np.array(each)).T
+        push = self.modes.push[fast, : len(self.laws)] ** 2
+        rate = push @ damps / 2 + push @ stiff / (2 * omega[fast])
+        lost = np.zeros(len(omega))
+        lost[fast] = np.minimum(1.0, rate * (self.time[-1] - self.time[0]))
+        sizes = self.sizes()
+        return np.asarray(sizes @ lost[: sizes.shape[1]])
 
     def told(self, looked: list[Real]) -> list[Real]:
         """Return what is asked for of what was looked at."""
