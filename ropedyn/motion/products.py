@@ -16,7 +16,7 @@ from ..base.array import Index, Real
 from ..signal import contour
 from .undamped import Parted
 
-LOST, NONE = 1e-3, 1e-9
+LOST, NONE = 1.0, 1e-9
 """Products below this part of what rounding may be are none, and shares below that of them."""
 KNOWN = 1e-13  # Above this share of what points yield rounding leaves digits.
 
@@ -136,32 +136,37 @@ class _Together(NamedTuple):
 
         By rounding of products, and as much as one may have that rounding hides.
         """
-        i, o = self.at
-        stands, size = np.abs(self.push[i].diagonal()), self.size
         t = np.flatnonzero(twin >= 0)
-        root = np.sqrt(size[t, twin[t]])
-        push, seen = np.zeros(len(twin)), np.zeros((size.shape[1], len(t)))
+        root = np.sqrt(self.size[t, twin[t]])
+        push, seen = np.zeros(len(twin)), np.zeros((self.size.shape[1], len(t)))
         push[t] = root
-        np.divide(size[t].T, root, where=root > 0, out=seen)
-        hidden = math.sqrt(LOST)
-        return (
-            hidden * push + (size[:, o] / stands) @ np.abs(share),
-            hidden * seen.max(axis=1) + (size[i].T / stands) @ np.abs(share),
-        )
+        np.divide(self.size[t].T, root, where=root > 0, out=seen)
+        hidden, (a, b) = math.sqrt(LOST), self.rounded
+        return hidden * push + a @ np.abs(share), hidden * seen.max(axis=1) + b @ np.abs(share)
+
+    @property
+    def rounded(self) -> tuple[Real, Real]:
+        """How far push and seen are off by rounding of residues, (points, products)."""
+        i, o = self.at
+        stands = np.abs(self.push[i].diagonal())
+        return self.size[:, o] / stands, self.size[i].T / stands
 
     def all_of(self, found: list[list[State]]) -> list[list[State]]:
         """Return states of modes whose sum is that of the products, but within rounding."""
-        i, _ = self.at
-        own = [[np.linalg.solve(self.push[i], a[i]) for a, _ in states] for states in found]
-        every, weight = np.array([one for each in own for one in each]), self.weight
-        none = np.eye(len(weight))
-        off = np.linalg.cholesky(every.T @ every) - none
+        both = [np.array(one) for one in zip(*(one for states in found for one in states))]
+        own = np.linalg.solve(self.push[self.at[0]], both[0][:, self.at[0]].T).T
+        none, weight = np.eye(len(self.weight)), self.weight
+        off = np.linalg.cholesky(own.T @ own) - none
         off[np.abs(off) * np.multiply.outer(weight, weight) <= 1] = 0.0
-        more = [[np.linalg.solve(none + off, one) - one for one in each] for each in own]
-        return [
-            [(a + self.push @ d, b + self.seen @ d) for (a, b), d in zip(states, each)]
-            for states, each in zip(found, more)
-        ]
+        kept = np.linalg.solve(none + off, own.T).T
+        for k, (product, rounded) in enumerate(zip((self.push, self.seen), self.rounded)):
+            beside = both[k] - own @ product.T
+            # which adds up to nothing, too
+            more = beside.T @ kept
+            more[np.abs(more) <= rounded] = 0.0
+            both[k] = beside + kept @ (product - more).T
+        every = iter(zip(*both))
+        return [[next(every) for _ in states] for states in found]
 
 
 def _told(whole: _Part, parts: list[_Part], most: int, twin: Index) -> list[list[State]]:

@@ -181,6 +181,27 @@ def test_resonators_on_two_points_are_told_apart(seed):
     assert off.max() < 1e-11 * np.abs(linear.value).max()
 
 
+def test_what_is_known_of_close_modes_together_stays_known():
+    """Three resonators on one span are close to a mode of the other, which they do not change."""
+    hertz, mass = (13.559196837, 13.559196836, 13.559196811), (1.37e-4, 1.7e-4, 2.26e-4)
+    alike = [rd.Resonator(0.125, m, f) for m, f in zip(mass, hertz)]
+    rope = rd.Rope(1.0, 0.19848408442511645)
+    asked = {"drive": ("z", 0.625), "force": rd.Sine(1.0, 18.98), "quantity": "velocity"}
+
+    def moved(*part, **how):
+        scene = rd.Scene(rope, tension=38.426786663033724, parts=[rd.Support(0.5), *alike, *part])
+        model = scene.compile(elements=8, element="rigid")
+        response = [("z", k / 8) for k in (1, 2, 3, 5, 6, 7)]
+        return model.transient(np.linspace(0.0, 1.475, 11), response=response, **asked, **how)
+
+    linear, nothing = moved(method="modal"), rd.NodeForce(0.125, lambda t, u, v: 0.0 * u)
+    for beside, method in (rd.Stop(0.125, 1e3, gap=1e6), "events"), (nothing, "auto"):
+        found = moved(beside, method=method)
+        off = np.abs(found.value - linear.value)[3:]
+        assert (off <= (found.error + linear.error)[3:]).all()
+        assert off.max() < 1e-11 * np.abs(linear.value).max()
+
+
 @pytest.mark.parametrize("apart", [1e-13, 1e-12, 1e-11])
 def test_spans_of_nearly_one_frequency_are_answered(apart):
     """Between modes that are so close the response has no digit left to tell them apart."""

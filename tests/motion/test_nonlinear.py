@@ -206,6 +206,23 @@ def test_steps_that_agree_for_a_while_tell_no_smaller_error():
     assert (np.abs(rough.value - fine.value) <= rough.error + fine.error).all()
 
 
+def test_accelerations_that_jump_are_known_where_they_are_asked_for():
+    """Runs differ in when friction turns; beside a jump they were compared, and refused."""
+    parts = [rd.Dashpot(0.4, 0.3, exponent=0.0), rd.NodeForce(0.6, lambda t, u, v: -1e3 * u**3)]
+    scene = rd.Scene(
+        rd.Rope(1.0, 0.1), tension=10.0, damping=rd.RayleighDamping(1.0, 0.0), parts=parts
+    )
+    asked = {"drive": ("z", 0.2), "force": rd.Sine(1.0, 6.0), "response": ("z", 0.4)}
+    few, many = (
+        scene.compile(elements=5, element="rigid").transient(
+            np.linspace(0.0, 1.0, count), quantity="acceleration", tolerance=to, **asked
+        )
+        for count, to in ((5, 1e-2), (9, 1e-2))
+    )
+    assert few.cost.method == "steps"
+    assert (np.abs(few.value - many.value[:, ::2]) <= few.error + many.error[:, ::2]).all()
+
+
 def test_what_rests_all_over_beside_a_smooth_law_is_known_to_rest():
     parts = [rd.Dashpot(MIDDLE[1], 5.0, exponent=0.0), rd.Dashpot(LENGTH / 4, 1.0, exponent=1.5)]
     scene = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION, parts=parts)

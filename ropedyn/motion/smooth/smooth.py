@@ -208,7 +208,8 @@ def agree(
             most = allowed(looked[0], tolerance, watched, driven=driven, held=held, rests=rests)
             bends = (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
             falls = BENT_FALLS if bends else system.falls
-            wrong = runs.apart(between, coarse, falls, sharp=system.is_sharp)
+            sharp = system.is_sharp and not system.jumps
+            wrong = runs.apart(between, coarse, falls, sharp=sharp)
             # of the step that is longer at a time, what came within it
             soon = np.searchsorted(every, time + system.finer * h, side="right") - 1
             found.step_error = reach(falls) * wrong[:, soon] + rounding(looked[0], time)

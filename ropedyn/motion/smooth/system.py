@@ -78,7 +78,7 @@ class LawSystem:
         At a few times two runs agree by chance.
         """
         time = self.looks[0].time
-        if not 1 < len(time) < SEEN:
+        if not 1 < len(time) < SEEN or self.jumps:
             return self, slice(None)
         parts = math.ceil(SEEN / (len(time) - 1))
         index = np.arange(len(time), dtype=np.float64)
@@ -99,6 +99,11 @@ class LawSystem:
     def is_sharp(self) -> bool:
         """Whether some law jumps or bends where velocities turn or contact begins."""
         return False
+
+    @property
+    def jumps(self) -> bool:
+        """Whether what is looked at jumps, sooner in one run than in another: accelerations."""
+        return self.is_sharp and self.looks[0].order == 2
 
     def held(self, points: Sequence[Point], _largest: Real) -> Flags:
         """Say which points laws hold, whose forces have been so large [N]."""
