@@ -19,10 +19,11 @@ class Gravity(Description):
 
         T(s) = T_ref + integral of w from s_ref to s, + m g sin(inclination) above each mass m
 
-    with T_ref and s_ref of the scene's `Tension`, the middle where that is a number, T_ref right
-    above a mass that stands there. Continuous spans are exact for it, elements of chains each have
-    the tension at their middle. Without bending stiffness it must not be negative anywhere; at a
-    free end it may vanish, as of a hanging chain. What does not go with it is refused.
+    with T_ref and s_ref of the scene's `Tension`, the middle where that is a number. Of a mass that
+    stands there T_ref is on the side of larger x: above it where the inclination is positive, below
+    where it is negative. Continuous spans are exact for it, elements of chains each have the
+    tension at their middle. Without bending stiffness it must not be negative anywhere; at a free
+    end it may vanish, as of a hanging chain. What does not go with it is refused.
 
     A rope with axial stiffness is curved as well ("sag"), unless it stands upright. With the
     chordwise tension H (the scene's), w = linear_density g cos(inclination) and the chord L, it

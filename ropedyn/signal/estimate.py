@@ -162,6 +162,11 @@ def _kept(frequency: Real, power: Real, band: Real | None, at_rest: bool) -> Fla
         kept = (frequency >= band[0]) & (frequency <= band[1]) & (power > 0)
     # a velocity at 0 Hz says nothing of the displacement there
     kept &= (frequency > 0) | at_rest
+    if not kept.any() and band is None:
+        raise SceneError(
+            "band must be given for responses of velocity or acceleration where the force has "
+            "little above 0 Hz, as one that stays"
+        )
     if not kept.any():
         raise SceneError(f"band must hold a frequency the force has, got {check.shown(band)}")
     return kept

@@ -19,6 +19,7 @@ from .spectrum import time_step
 LEAST = 16  # A record of free motion must have so many times.
 CREEP = 1e-6  # Motion whose phase turns less than by this part of its rate does not oscillate.
 VAGUE = 0.02  # A mode whose rate is not known to this part of it is none.
+FAINT = 1e-5  # Nor is what has less than this part of the largest amplitude: it may be rounding.
 STOP_BAND = 100.0  # The low-pass stops by so much [dB].
 WIDEST = 250  # Half the pass band times the length of the record is at most this.
 
@@ -199,6 +200,7 @@ def _mode_near(band: Band, f: float) -> tuple[complex, complex, float, float]:
     rate = found.log / band.step + 1j * band.shift
     variance = found.variance / band.step**2
     told = (rate.imag > CREEP * np.abs(rate)) & (variance < (VAGUE * np.abs(rate)) ** 2)
+    told &= np.abs(found.size) > FAINT * np.abs(found.size).max()
     if not told.any():
         raise SolveError(f"nothing oscillates near {f:g} Hz")
     k = int(np.where(told, np.abs(rate - 2j * np.pi * f), np.inf).argmin())

@@ -161,6 +161,15 @@ def test_samples_of_a_force_are_the_straight_lines_that_drive():
     assert ratio == pytest.approx(1.0, abs=0.01)
 
 
+def test_a_band_is_asked_for_where_the_force_stays():
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=DAMPED).compile(elements=8)
+    time = np.linspace(0.0, 8.0, 4000)
+    history = model.transient(time, force=rd.Step(1.0), quantity="velocity", **WHERE)
+    with pytest.raises(rd.SceneError, match="band must be given for responses of velocity"):
+        history.frf()
+    assert history.frf(band=(1.0, 40.0)).frequency[0] >= 1.0
+
+
 def test_what_is_not_known_is_named():
     history = BEAM.transient(TIME, force=BLOWS["1 ms"], **WHERE)
     assert history.frf(window="hann").notes[0].startswith("force: its samples, which the window")

@@ -157,3 +157,24 @@ def test_a_history_has_its_errors_over_responses_and_time():
     found = made(TIME[:5], np.ones((2, 5))).to_xarray()
     for name in ("value", "error", "mesh_error"):
         assert found[name].dims == ("response", "time")
+
+
+def test_what_rounding_leaves_is_no_mode():
+    """Of 1e-15 of the motion, and nearer to the line, it was told as a mode that grows."""
+    length = 0.9291018001730192
+    tip = rd.End(z="free", dashpot={"z": 66.42436391178306})
+    scene = rd.Scene(
+        rd.Rope(length, 0.11736287681810484),
+        tension=2384.2756672773194,
+        ends=("clamped", tip),
+        damping=rd.RayleighDamping(21.19159644986563, 6.082380058495784e-05),
+    )
+    model = scene.compile(elements=3, element="rigid")
+    time = np.linspace(0.0, 20 / 76.70427384872973, 1500)
+    where = {"start": {("z", length / 3): 1.0}, "response": ("z", 2 * length / 3)}
+    found = model.transient(time, tolerance=1e-5, **where).ring_down()
+    mode = model.modes(2, damped=True)
+    (k,) = np.flatnonzero(mode.damping_ratio < 1)
+    exact = mode.frequency[k] / np.sqrt(1 - mode.damping_ratio[k] ** 2)
+    assert found.damping_ratio[0] == pytest.approx(mode.damping_ratio[k], rel=1e-8)
+    assert found.frequency[0] == pytest.approx(exact, rel=1e-8)
