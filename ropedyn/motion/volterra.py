@@ -39,7 +39,7 @@ from .modal.expansion import refuse_losses
 from .moved import Moved, against_spans, of_kinds
 from .request import TOLERANCE, Run
 from .smooth.laws import LawFailure, SmoothLaw
-from .smooth.passage import Runs
+from .smooth.passage import Runs, since_they_differ
 from .smooth.smooth import allowed
 
 FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, of a second run at least and at most, or
@@ -255,12 +255,14 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
             continue
         if coarse is not None:
             before = coarse[1]
-            both = runs.apart(found.value, before.value, FALLS, sharp=sharp)
+            both = runs.apart(found.value, before.value, FALLS)
             known = found._replace(error=found.error + TIMES * both)
             free, held = stepped.free, stepped.held
             most = allowed(found.value, tolerance, run.responses, driven=free, held=held)[:, None]
             if (known.error <= most).all():
-                return stepped, known, None
+                if sharp:
+                    both = since_they_differ(both, found.value)
+                return stepped, known._replace(error=found.error + TIMES * both), None
             # shorter steps do not help where linear motion is not known
             if more > most_steps or (np.minimum(found.error, before.error) > most).any():
                 seen = np.where(np.isfinite(both), both, runs.kept)

@@ -112,7 +112,7 @@ def _agreed(system: CoupledSystem, run: Run) -> tuple[Real, list[Real]]:
             raise passed.error
         now = None if passed.error is not None else passage.energies(run.time)
         if now is not None and before is not None:
-            off = reach(falls) * runs.apart(now, before, falls, sharp=False).max(initial=0.0)
+            off = reach(falls) * runs.apart(now, before, falls).max(initial=0.0)
             if off <= tolerance * np.abs(now).max(initial=0.0):
                 plain = system.without_laws()
                 return now, [one + other for one, other in zip(plain, passed.looked)]

@@ -89,17 +89,22 @@ class Runs:
     def __init__(self) -> None:
         self.kept: Real | float = np.inf
 
-    def apart(self, found: Real, before: Real, falls: float, *, sharp: bool) -> Real:
+    def apart(self, found: Real, before: Real, falls: float) -> Real:
         """Return it, as found (outputs, t); half the step divides errors by `falls` at least."""
-        # where velocities turn or contact begins, two runs may agree by chance, for a while too:
-        # of laws that are sharp, from where they differ on, the largest of all times counts
+        # where velocities turn or contact begins, two runs may agree by chance
         last = self.kept / falls if np.isfinite(falls) else 0.0
         now = np.maximum.accumulate(np.abs(found - before), axis=1)
-        if sharp:
-            differ = now > SAME * np.abs(found).max(axis=1, initial=0.0)[:, None]
-            now = np.where(differ, now[:, -1:], now)
         self.kept = np.maximum(now, np.where(np.isfinite(self.kept), self.kept, 0.0) / FORGETS)
         return np.maximum(now, last)
+
+
+def since_they_differ(apart: Real, found: Real) -> Real:
+    """Return the largest distance of two runs from where they differ on, which never falls.
+
+    They may see a turn alike, and agree by chance for a while.
+    """
+    differ = apart > SAME * np.abs(found).max(axis=1, initial=0.0)[:, None]
+    return np.where(differ, apart[:, -1:], apart)
 
 
 def reach(falls: float) -> float:

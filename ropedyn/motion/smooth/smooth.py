@@ -35,7 +35,7 @@ from ..request import TOLERANCE, Run
 from ..states import LARGEST, softens, without_dashpots
 from ..undamped import losses_of
 from .laws import PointLaw, laws_on, why_not_smooth
-from .passage import LawPassage, Runs, reach
+from .passage import LawPassage, Runs, reach, since_they_differ
 from .stretching import StretchedPassage
 from .system import LawQuestion, LawSystem, OutputTimes
 
@@ -208,8 +208,9 @@ def agree(
             most = allowed(looked[0], tolerance, watched, driven=driven, held=held, rests=rests)
             bends = (passed.bent > np.maximum(bent / BENDS, NOTHING)).any()
             falls = BENT_FALLS if bends else system.falls
-            sharp = system.is_sharp and not system.jumps
-            wrong = runs.apart(between, coarse, falls, sharp=sharp)
+            wrong = runs.apart(between, coarse, falls)
+            if system.is_sharp and not system.jumps:
+                wrong = since_they_differ(wrong, between)
             # of the step that is longer at a time, what came within it
             soon = np.searchsorted(every, time + system.finer * h, side="right") - 1
             found.step_error = reach(falls) * wrong[:, soon] + rounding(looked[0], time)
