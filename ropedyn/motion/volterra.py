@@ -262,7 +262,8 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
             if (known.error <= most).all():
                 if sharp:
                     both = since_they_differ(both, found.value)
-                return stepped, known._replace(error=found.error + TIMES * both), None
+                    known = found._replace(error=found.error + TIMES * both)
+                return stepped, known, None
             # shorter steps do not help where linear motion is not known
             if more > most_steps or (np.minimum(found.error, before.error) > most).any():
                 seen = np.where(np.isfinite(both), both, runs.kept)

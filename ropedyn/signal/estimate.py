@@ -16,8 +16,6 @@ from .transfer import ESTIMATORS, Spectra, coherence_of, forced
 OVERLAPPING = 0.53
 """Segments of Hann's window that half overlap count so many times as independent ones: Bendat and
 Piersol (2010), section 11.5.2.2."""
-
-
 FOLDED = (1, 2, 3)  # So many rates above, what folds into the lines is added up.
 STEEPER = 2  # So many powers of the frequency more, a beam's responses fall than a string's.
 OVER = 4  # Responses may be so many times as large above half the rate as in the octave below it.
@@ -99,21 +97,27 @@ def estimate_known(
         raise SceneError("force must drive within the times, got 0")
     kept = _kept(frequency, np.abs(pushed) ** 2, _band(band), at_rest)
     found, least = moved[:, kept] / pushed[kept], np.abs(pushed[kept])
-    folded = np.max(_above(frequency, moved, pushed, push, falls)[kept] / least)
+    above = _above(frequency, moved, pushed, push, half=0.5 / step, falls=falls)
+    folded = np.max(above[kept] / least)
     missed = step * np.max(error.sum(axis=1)) / least.min()
     size = np.abs(found).max() or np.inf
     return Estimate(frequency[kept], found, None, None), float(folded / size), float(missed / size)
 
 
 def _above(
-    frequency: Real, moved: Complex, pushed: Complex, push: Callable[[Real], Complex], falls: int
+    frequency: Real,
+    moved: Complex,
+    pushed: Complex,
+    push: Callable[[Real], Complex],
+    *,
+    half: float,
+    falls: int,
 ) -> Real:
     """Guess what lies above half the rate of the times and folds into each line.
 
     The force is known there, and responses fall on from the two octaves below.
     """
-    half, size = frequency[-1], np.abs(pushed)
-    high = []
+    size, high = np.abs(pushed), []
     for least, most in ((half / 4, half / 2), (half / 2, half)):
         within = (frequency >= least) & (frequency <= most)
         driven = within & (size > 0) & (size >= DRIVEN * size[within].max(initial=0.0))
