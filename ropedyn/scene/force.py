@@ -13,8 +13,25 @@ from ..base.array import Real
 from ..base.errors import SceneError
 from ..base.parameter import Description, number
 
+HALVES = 2.0**27 + 1  # Parts numbers in halves whose products are exact: Dekker (1971).
 ANY = "N or N m or m or rad"
 """What drives is a force, a moment, or the motion of an end, and has one of these units."""
+
+
+def rotation(frequency: float, time: Real | float) -> Real:
+    """Return 2 pi frequency time [rad] less whole turns, to the last digit at any time."""
+    (f, by_f), (t, by_t) = np.frexp(frequency), np.frexp(time)
+    (high_f, low_f), (high_t, low_t) = _halves(f), _halves(t)
+    product = f * t
+    lost = ((high_f * high_t - product) + high_f * low_t + low_f * high_t) + low_f * low_t
+    turns = np.fmod(np.ldexp(product, by_f + by_t), 1.0) + np.ldexp(lost, by_f + by_t)
+    return np.asarray(2 * np.pi * turns)
+
+
+def _halves(number: Real) -> tuple[Real, Real]:
+    """Return two halves of the digits."""
+    high = HALVES * number - (HALVES * number - number)
+    return high, number - high
 
 
 class Force(Protocol):
@@ -91,12 +108,15 @@ class Sine(Description, Force):
 
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""
-        return np.asarray(self.amplitude * np.sin(2 * np.pi * self.frequency * time + self.phase))
+        return np.asarray(self.amplitude * np.sin(self.angle(time)))
 
     def rate(self, time: Real) -> Real:
         """Return its derivative at times [s]."""
-        omega = 2 * np.pi * self.frequency
-        return np.asarray(self.amplitude * omega * np.cos(omega * time + self.phase))
+        return np.asarray(self.amplitude * 2 * np.pi * self.frequency * np.cos(self.angle(time)))
+
+    def angle(self, time: Real | float) -> Real:
+        """Return where in a turn it is at times [s]; [rad]."""
+        return rotation(self.frequency, time) + self.phase
 
     @property
     def highest(self) -> float:

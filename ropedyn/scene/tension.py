@@ -11,6 +11,7 @@ from ..base import check
 from ..base.array import Real
 from ..base.errors import SceneError
 from ..base.parameter import Description, flag, given, number
+from .force import rotation
 
 AT = ("middle", "start", "end")
 """Words for the places where the mean is known."""
@@ -127,5 +128,4 @@ class Tension(Description):
         >>> tension.pulsation(np.array([0.0, 0.01, 0.02]))
         array([ 100., -100.,  100.])
         """
-        angle = 2 * np.pi * self.frequency * time + self.phase
-        return np.asarray(self.amplitude * np.cos(angle))
+        return np.asarray(self.amplitude * np.cos(rotation(self.frequency, time) + self.phase))

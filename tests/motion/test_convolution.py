@@ -119,8 +119,9 @@ def test_sine_moves_every_kind_of_mode_as_its_closed_form(kind, span):
     sigma, square = KINDS[kind]
     for frequency, phase in zip(frequencies(kind, span), [0.0, 0.3, 0.0, 1.0, 2.0, 0.5]):
         time, w = some_times(0.25, span), 2 * math.pi * frequency
-        start = phase + w * 0.25
-        cosine, sine = math.sin(start), math.cos(start)
+        with mp.workdps(30):  # as many turns take digits
+            start = (phase + 2 * mp.pi * mp.mpf(frequency) / 4) % (2 * mp.pi)
+        cosine, sine = mp.sin(start), mp.cos(start)
         exact = []
         for t in time:
             since = mp.mpf(float(t - 0.25))

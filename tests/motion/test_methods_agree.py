@@ -1,5 +1,8 @@
 """Laws that never act leave linear motion: what one method tells, the others do."""
 
+import math
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson
@@ -274,3 +277,57 @@ def test_stiffness_damping_beside_own_weight_is_the_same_beside_a_law_that_is_ne
     kept = sum(energy[name] for name in ("kinetic", "strain", "dissipated"))
     assert np.abs(energy["input"] - work).max() < 1e-4 * work.max()  # measured: 5e-6
     assert np.abs(kept - energy["input"]).max() < 1e-4 * work.max()
+
+
+@pytest.mark.parametrize(
+    ("parts", "method"),
+    [
+        ([], "modal"),
+        ([rd.Dashpot(0.375, 3.0)], "line"),
+        ([rd.Stop(0.375, 1e4, gap=1e-4)], "events"),
+        ([rd.Dashpot(0.375, 0.5, exponent=0.0)], "events"),
+        ([rd.Dashpot(0.375, 0.5, exponent=2.0)], "collocation"),
+    ],
+    ids=str,
+)
+def test_motion_begun_days_later_is_the_same(parts, method):
+    """Sines were rounded to 1.6e-8 and times of events to 1e-7 of the motion, 1e-11 said."""
+    model = rd.Scene(STRING, tension=1000.0, parts=parts).compile(**PINNED)
+    step, late = 2.0**-12, 2.0**20  # all times and turns are numbers
+    time = step * np.arange(200)
+    for force in (lambda begin: rd.Step(5.0, time=begin + 3 * step), lambda _: rd.Sine(5.0, 64.25)):
+        now, later = (
+            model.transient(begin + time, drive=("z", 0.25), force=force(begin))
+            for begin in (0.0, late)
+        )
+        assert now.cost.method == method
+        apart = np.abs(now.value - later.value)
+        assert apart.max() <= 1e-10 * np.abs(now.value).max()  # measured: 0, collocation 2e-11
+        assert (apart <= now.error + later.error).all()
+
+
+def test_turns_of_sines_are_exact():
+    rng = np.random.default_rng()
+    for _ in range(200):
+        frequency = rng.uniform(1, 2) * 10.0 ** rng.uniform(-40, 60)
+        time = rng.uniform(-2, 2) * 10.0 ** rng.uniform(-3, 12) / frequency
+        turns = float(Fraction(frequency) * Fraction(time) % 1)
+        off = rd.Sine(1.0, frequency).value(np.array([time]))[0] - math.sin(2 * math.pi * turns)
+        assert abs(off) < 1e-14  # 2 pi of rounding
+
+
+@pytest.mark.parametrize("parts", [[], [rd.Dashpot(0.375, 3.0)]], ids=["modal", "coupled"])
+def test_what_many_turns_round_is_part_of_the_error(parts):
+    """Events said 2e-11 after 10 000 s, where rounding of the frequency is 4e-10."""
+    damping = None if parts else rd.ModalDamping(0.01)
+    scene = rd.Scene(STRING, tension=1000.0, damping=damping, parts=parts)
+    model, time = scene.compile(**PINNED), np.linspace(0.0, 1e4, 20_001)
+    asked = {"drive": ("z", 0.25), "response": ("z", 0.5)}
+    history = model.transient(time, force=rd.Sine(5.0, 64.3), method="events", **asked)
+    receptance = model.frf([64.3], **asked).value[0, 0]
+    turns = [float(Fraction(64.3) * Fraction(t) % 1) for t in time.tolist()]
+    steady = 5.0 * np.abs(receptance) * np.sin(2 * np.pi * np.array(turns) + np.angle(receptance))
+    late = time > 100.0
+    off, most = np.abs(history.value[0] - steady)[late], np.abs(steady).max()
+    assert (off <= history.error[0, late]).all()
+    assert history.error.max() < 1e-7 * most  # measured: 6e-9

@@ -175,7 +175,7 @@ def pieces(force: Force, begin: float) -> list[SinePiece]:
     """Return what acts from a time on, in turn."""
     if isinstance(force, Sine):
         w = 2 * math.pi * force.frequency
-        return [_sine(begin, w, force.amplitude, w * begin + force.phase)]
+        return [_sine(begin, w, force.amplitude, float(force.angle(begin)))]
     if isinstance(force, Step):
         return [SinePiece(max(force.time, begin), cosine=force.amplitude)]
     assert isinstance(force, Impulse)

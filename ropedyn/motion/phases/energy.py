@@ -65,8 +65,9 @@ def _component(run: Run, one: Moving) -> Real:
     before, pressed = None, 0.0
     forces = [run.forces[k] for k in one.drives]
     _refuse_infinite(one, forces, run.time)
+    time = run.time - run.time[0]
     for visit in PhaseWalk(one.system).visits(rest(one, 0.0), pieces(forces, run.time)):
-        edges = _edges(one, visit, run.time)
+        edges = _edges(one, visit, time)
         stored = _stored(one, _look(one, visit, edges))
         if before is None:
             rested = _stored(one, _at_rest(one, visit))
@@ -78,9 +79,9 @@ def _component(run: Run, one: Moving) -> Real:
         each = power.reshape(2, -1, len(NODES)) @ (WEIGHTS / 2) * np.diff(edges)
         gone = done[:, None] + np.concatenate([np.zeros((2, 1)), each.cumsum(axis=1)], axis=1)
         done = gone[:, -1]
-        i, j = np.searchsorted(run.time, [visit.start, visit.stop])
-        j += int(visit.stop >= run.time[-1])
-        at = np.minimum(np.searchsorted(edges, run.time[i:j] - visit.start), len(edges) - 1)
+        i, j = np.searchsorted(time, [visit.start, visit.stop])
+        j += int(visit.stop >= time[-1])
+        at = np.minimum(np.searchsorted(edges, time[i:j] - visit.start), len(edges) - 1)
         result[:2, i:j], result[4, i:j] = stored[:2, at], stored[2, at] - pressed
         result[2:4, i:j] = gone[:, at]
     return result

@@ -50,26 +50,28 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
     seen = [np.zeros((len(one.points), len(one.time))) for one in looks]
     sizes = [np.zeros((3, len(one.points))) for one in looks]
     events: list[float] = []
+    first = float(run.time[0])  # ulps of late times would be rounding of the motion
+    looks = [one._replace(time=one.time - first) for one in looks]
     whole, until = True, math.inf
     components = moving_components(run, looks, modes, other=nudge > 0)
     for one in components:
-        walk, reached = PhaseWalk(one.system, OFF if nudge else 0.0), float(run.time[0])
+        walk, reached = PhaseWalk(one.system, OFF if nudge else 0.0), 0.0
         forces, st = [run.forces[k] for k in one.drives], one.system.states
         shapes = np.stack([st.seen, st.wrong * st.seen, st.reach])
         try:
-            for visit in walk.visits(rest(one, nudge), pieces(forces, run.time, 1 + nudge)):
-                is_last = visit.stop >= run.time[-1]
+            for visit in walk.visits(rest(one, nudge), pieces(forces, run.time, nudge)):
+                is_last = visit.stop >= one.system.span
                 for look, value, size, (rows, which) in zip(looks, seen, sizes, one.watched):
                     moved = visit.size(shapes[:, rows], look.order)
                     size[:, which] = np.maximum(size[:, which], moved)
                     _record(visit, look, value, rows=rows, which=which, last=is_last)
                 reached = visit.stop
-                run.progress(min(1.0, (visit.stop - run.time[0]) / one.system.span))
+                run.progress(min(1.0, reached / one.system.span))
         except KeyboardInterrupt:
             # of components that were not followed nothing is known
-            until = reached if one is components[-1] else float(run.time[0])
+            until = first + (reached if one is components[-1] else 0.0)
             break
-        events += [at for at, _ in walk.events]
+        events += [first + at for at, _ in walk.events]
         whole = whole and one.is_whole
     return Followed(seen, sizes, sorted(events), whole, modes, until)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -13,20 +12,22 @@ from ...base.array import Complex, Real
 from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
 from .driven import Forcing
 
+ULP = np.finfo(float).eps  # Rates are known to this part, which after many turns is far more.
 ROUND = 1e-6  # A force that changes by less of itself in an ulp does not jump.
 
 
 class ForcePiece(NamedTuple):
     """What drives from one time to another."""
 
-    start: float  # [s]
-    stop: float  # [s]
+    start: float  # since the first time [s]
+    stop: float
     push: Forcing  # since the start
     kick: Real  # (drives,) blows at the start [N s]
 
 
-def pieces(forces: Sequence[Force], time: Real, factor: float = 1.0) -> Iterator[ForcePiece]:
-    """Return what drives, times a factor, between the times at which it changes, in turn."""
+def pieces(forces: Sequence[Force], time: Real, nudge: float = 0.0) -> Iterator[ForcePiece]:
+    """Return what drives, nudged, between the times at which it changes, in turn."""
+    factor = 1 + nudge
     first, last = float(time[0]), float(time[-1])
     each = [list(_flat(force)) for force in forces]
     cuts = {first, last}
@@ -38,11 +39,12 @@ def pieces(forces: Sequence[Force], time: Real, factor: float = 1.0) -> Iterator
     order = np.array([*sorted(cuts), *ends])
     start, middle = order[:-1], (order[:-1] + order[1:]) / 2
     level, slope = (factor * one for one in _straight(each, start, middle))
-    for k, (begin, end) in enumerate(pairwise(order.tolist())):
+    for k, begin in enumerate(start.tolist()):
         kick = [sum(p for one in some for at, p in one.blows if at == begin) for some in each]
         rate, wave = _waves(each, begin, float(middle[k]))
-        push = Forcing(rate, factor * wave, level[:, k], slope[:, k])
-        yield ForcePiece(begin, end, push, factor * np.array(kick, dtype=np.float64))
+        push = Forcing((1 + min(nudge, ULP)) * rate, factor * wave, level[:, k], slope[:, k])
+        since, until = (order[k : k + 2] - first).tolist()
+        yield ForcePiece(since, until, push, factor * np.array(kick, dtype=np.float64))
 
 
 def _jumps(force: Force, when: float) -> bool:
@@ -84,7 +86,7 @@ def _waves(each: Sequence[Sequence[Force]], start: float, middle: float) -> tupl
     for d, force in ((d, one) for d, some in enumerate(each) for one in some):
         if isinstance(force, Sine) and force.frequency > 0:
             w = 2 * math.pi * force.frequency
-            waves.append((d, w, _sine(force.amplitude, w * start + force.phase)))
+            waves.append((d, w, _sine(force.amplitude, float(force.angle(start)))))
         elif isinstance(force, Impulse) and force.time <= middle < force.time + force.duration:
             w = math.pi / force.duration
             waves.append((d, w, _sine(float(force.amplitude), w * (start - force.time))))

@@ -69,8 +69,8 @@ class Instant(NamedTuple):
 class Visit(NamedTuple):
     """A phase while it lasts."""
 
-    start: float  # [s]
-    stop: float  # [s]
+    start: float  # since the first time [s]
+    stop: float
     phase: Phase
     driven: UnderDrives  # since its start
     outputs: Course  # responses, displacements and forces of laws, since the start
@@ -101,7 +101,7 @@ class PhaseWalk:
     def __init__(self, system: PhaseSystem, off: float = 0.0) -> None:
         self.system, self.off = system, off
         self.phases: dict[tuple[int, ...], Phase] = {}
-        self.events: list[tuple[float, int]] = []  # when, and of which law
+        self.events: list[tuple[float, int]] = []  # when, as visits, and of which law
 
     def visits(
         self, start: Instant, pieces: Iterator[ForcePiece], mode: tuple[int, ...] | None = None
@@ -278,7 +278,7 @@ class PhaseWalk:
 
 def _unsettled(time: float) -> SolveError:
     """Return what is said where events at once do not end."""
-    return SolveError(f"stops and friction find no lasting phase at t = {time:g} s")
+    return SolveError(f"stops and friction find no lasting phase {time:g} s after the first time")
 
 
 def _scaled(course: Course, factor: float, shift: float) -> Course:
