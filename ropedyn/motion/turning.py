@@ -26,7 +26,7 @@ from ..chain.chain import CHANNELS
 from ..chain.compiled import Compiled
 from ..chain.port import moving
 from ..scene.end import end_of
-from ..scene.force import Sine, rotation
+from ..scene.force import Sine
 from ..scene.parts.stretch import refuse_uneven
 from ..scene.scene import Scene
 from ..scene.tension import Tension
@@ -167,9 +167,9 @@ def _mesh_error(run: Run, history: History, own: list[int], twist: Real) -> Real
 
 def _pulsation(tension: Tension, time: Real, order: int) -> Real:
     """Return what pulsation adds to the tension, `order` times differentiated."""
-    angle = rotation(tension.frequency, time) + tension.phase + order * math.pi / 2
     most = tension.amplitude * (2 * math.pi * tension.frequency) ** order
-    return np.asarray(most * np.cos(angle))
+    phase = tension.phase + (1 + order) * math.pi / 2
+    return Sine(most, tension.frequency, phase=phase).value(time)
 
 
 def _pulsating(run: Run) -> Tension:

@@ -893,7 +893,7 @@ def test_events_that_rounding_makes_are_refused():
     held = rd.End(z="free", beta="free", spring={"z": 6337.0})
     parts = [rd.Spring(0.25, 1.2e10), rd.Spring(0.5, 1.784e4), *pressed(0.25, 3.09e4)]
     scene = rd.Scene(rope_, tension=53.2, ends=("pinned", held), parts=parts)
-    with pytest.raises(rd.SolveError, match=r"find no lasting phase 0\.013"):
+    with pytest.raises(rd.SolveError, match="find no lasting phase at t = 0"):
         scene.compile(elements=4, element="rigid").transient(
             np.linspace(0.0, 0.137, 60),
             drive=[("beta", 0.5), ("z", 0.5)],

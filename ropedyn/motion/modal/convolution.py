@@ -188,6 +188,15 @@ def pieces(force: Force, begin: float) -> list[SinePiece]:
     return [_sine(start, w, force.amplitude, w * (start - force.time)), SinePiece(end)]
 
 
+def felt(force: Force, begin: float, time: Real) -> Real:
+    """Return a force as its motion has it: after many turns an ulp of the frequency is seen."""
+    if isinstance(force, Sum):
+        return np.sum([felt(one, begin, time) for one in force.forces], axis=0)
+    if isinstance(force, Sine):
+        return pieces(force, begin)[0].value(time, 0)
+    return force.value(time)
+
+
 def _sine(start: float, w: float, amplitude: float, phase: float) -> SinePiece:
     """Return amplitude sin(w (t - start) + phase)."""
     return SinePiece(start, w, amplitude * math.sin(phase), amplitude * math.cos(phase))

@@ -32,7 +32,7 @@ from ...scene import damping
 from ...scene.force import Force, Sum
 from ..history import Balance
 from ..request import Run
-from .convolution import motion_under
+from .convolution import felt, motion_under
 from .expansion import Expansion, Share, expand
 
 NAMES = ("kinetic", "strain", "input", "dissipated")
@@ -152,8 +152,8 @@ class DrivenModes:
 
     def _power(self, modes: Index, time: Real) -> Real:
         """Return what forces do to some modes."""
-        time = np.append(self.time[0], time)
-        return np.asarray((self._force(time) * self._velocity(time, modes)).sum(axis=0)[1:])
+        velocity = self._velocity(np.append(self.time[0], time), modes)[:, 1:]
+        return np.asarray((self._force(time) * velocity).sum(axis=0))
 
     def _loss(self, modes: Index, time: Real) -> Real:
         """Return what dampers take from some modes."""
@@ -163,9 +163,8 @@ class DrivenModes:
 
     def _power_of_rest(self, time: Real) -> Real:
         """Return what forces do to what lags."""
-        time = np.append(self.time[0], time)
-        y = self.rest @ self._rest(time, 1)
-        return np.asarray((self._force(time) * y).sum(axis=0)[1:])
+        y = self._rest(np.append(self.time[0], time), 1)[:, 1:]
+        return np.asarray((self._force(time) * (self.rest @ y)).sum(axis=0))
 
     def _loss_of_rest(self, time: Real) -> Real:
         """Return what dampers take from what lags."""
@@ -198,9 +197,10 @@ class DrivenModes:
         return np.stack([motion_under(unit, 0, _smooth(one), time, order)[0] for one in self.given])
 
     def _force(self, time: Real) -> Real:
-        """Return what acts beside blows, as late as the motion has it, (drives, t)."""
-        unit = _nothing(0, 1)._replace(rest=np.ones((1, 1)))
-        return np.stack([motion_under(unit, 0, _smooth(one), time, 0)[0] for one in self.given])
+        still, begin = np.zeros(len(time)), float(self.time[0])
+        return np.stack(
+            [still if isinstance(f, float) else felt(f, begin, time) for f in self.given]
+        )
 
     @property
     def _forces(self) -> list[Force]:

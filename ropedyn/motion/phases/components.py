@@ -62,8 +62,8 @@ def moving_components(
         inputs: list[Any] = [*(run.drives[k] for k in drives), *loads, *laws.points]
         outputs: list[Point] = [*seen, *laws.points]
         st = states(model, component, inputs, outputs, modes=modes, other=other)
-        span = float(run.time[-1] - run.time[0])
-        system = PhaseSystem(st, laws, len(drives), len(loads), len(seen), span)
+        begin, span = float(run.time[0]), float(run.time[-1] - run.time[0])
+        system = PhaseSystem(st, laws, len(drives), len(loads), len(seen), begin, span)
         found.append(Moving(system, drives, list(loads.values()), watched))
     return found
 

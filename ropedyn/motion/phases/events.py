@@ -71,7 +71,7 @@ def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> F
             # of components that were not followed nothing is known
             until = first + (reached if one is components[-1] else 0.0)
             break
-        events += [first + at for at, _ in walk.events]
+        events += [at for at, _ in walk.events]
         whole = whole and one.is_whole
     return Followed(seen, sizes, sorted(events), whole, modes, until)
 

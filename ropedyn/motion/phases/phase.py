@@ -84,7 +84,8 @@ class PhaseSystem:
     drives: int  # inputs of the states: these first,
     loads: int  # then loads that were let go, then laws
     responses: int  # outputs of the states: these first, then the laws' points
-    span: float  # How long the motion is asked for [s]
+    begin: float  # The first time that the motion is asked for [s]
+    span: float  # and how long from then on
 
     @property
     def first(self) -> int:

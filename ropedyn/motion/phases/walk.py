@@ -101,7 +101,7 @@ class PhaseWalk:
     def __init__(self, system: PhaseSystem, off: float = 0.0) -> None:
         self.system, self.off = system, off
         self.phases: dict[tuple[int, ...], Phase] = {}
-        self.events: list[tuple[float, int]] = []  # when, as visits, and of which law
+        self.events: list[tuple[float, int]] = []  # when [s], and of which law
 
     def visits(
         self, start: Instant, pieces: Iterator[ForcePiece], mode: tuple[int, ...] | None = None
@@ -133,9 +133,9 @@ class PhaseWalk:
                 soon = QUICK / np.abs(phase.poles.rate).max(initial=QUICK)
                 crowd = 0 if last > max(INSTANT * self.system.span, soon) else crowd + 1
                 if crowd > AT_ONCE:
-                    raise _unsettled(time)
+                    raise _unsettled(self.system.begin + time)
                 time, forcing = time + last, _later(forcing, last)
-                self.events.append((time, law))
+                self.events.append((self.system.begin + time, law))
                 now, mode = self._changed(
                     now, mode, law=law, guard=event.which, outputs=outputs, time=last
                 )
@@ -153,7 +153,7 @@ class PhaseWalk:
             now, mode = self._changed(
                 now, mode, law=law, guard=event.which, outputs=outputs, time=0.0
             )
-        raise _unsettled(piece.start)
+        raise _unsettled(self.system.begin + piece.start)
 
     def _first(self, start: Instant) -> tuple[int, ...]:
         """Return the phase before the first event: stops that are met, friction that holds."""
@@ -278,7 +278,7 @@ class PhaseWalk:
 
 def _unsettled(time: float) -> SolveError:
     """Return what is said where events at once do not end."""
-    return SolveError(f"stops and friction find no lasting phase {time:g} s after the first time")
+    return SolveError(f"stops and friction find no lasting phase at t = {time:g} s")
 
 
 def _scaled(course: Course, factor: float, shift: float) -> Course:
