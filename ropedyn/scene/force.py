@@ -18,14 +18,14 @@ ANY = "N or N m or m or rad"
 """What drives is a force, a moment, or the motion of an end, and has one of these units."""
 
 
-def rotation(frequency: float, time: Real | float) -> Real:
-    """Return 2 pi frequency time [rad] less whole turns, to the last digit at any time."""
+def rotation(frequency: float, time: Real | float, phase: float) -> Real:
+    """Return 2 pi frequency time + phase [rad] less whole turns, to the last digit at any time."""
     (f, by_f), (t, by_t) = np.frexp(frequency), np.frexp(time)
     (high_f, low_f), (high_t, low_t) = _halves(f), _halves(t)
     product = f * t
     lost = ((high_f * high_t - product) + high_f * low_t + low_f * high_t) + low_f * low_t
     turns = np.fmod(np.ldexp(product, by_f + by_t), 1.0) + np.ldexp(lost, by_f + by_t)
-    return np.asarray(2 * np.pi * turns)
+    return np.asarray(2 * np.pi * turns + phase)
 
 
 def _halves(number: Real) -> tuple[Real, Real]:
@@ -108,15 +108,13 @@ class Sine(Description, Force):
 
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""
-        return np.asarray(self.amplitude * np.sin(self.angle(time)))
+        angle = rotation(self.frequency, time, self.phase)
+        return np.asarray(self.amplitude * np.sin(angle))
 
     def rate(self, time: Real) -> Real:
         """Return its derivative at times [s]."""
-        return np.asarray(self.amplitude * 2 * np.pi * self.frequency * np.cos(self.angle(time)))
-
-    def angle(self, time: Real | float) -> Real:
-        """Return where in a turn it is at times [s]; [rad]."""
-        return rotation(self.frequency, time) + self.phase
+        angle = rotation(self.frequency, time, self.phase)
+        return np.asarray(self.amplitude * 2 * np.pi * self.frequency * np.cos(angle))
 
     @property
     def highest(self) -> float:

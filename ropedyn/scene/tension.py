@@ -128,4 +128,5 @@ class Tension(Description):
         >>> tension.pulsation(np.array([0.0, 0.01, 0.02]))
         array([ 100., -100.,  100.])
         """
-        return np.asarray(self.amplitude * np.cos(rotation(self.frequency, time) + self.phase))
+        angle = rotation(self.frequency, time, self.phase)
+        return np.asarray(self.amplitude * np.cos(angle))

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError, SolveError
-from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
+from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum, rotation
 from .chirp import chirp_between, under_chirp
 from .expansion import Expansion
 from .exponentials import Exponentials, Oscillators, evaluate, invert, rates
@@ -175,7 +175,8 @@ def pieces(force: Force, begin: float) -> list[SinePiece]:
     """Return what acts from a time on, in turn."""
     if isinstance(force, Sine):
         w = 2 * math.pi * force.frequency
-        return [_sine(begin, w, force.amplitude, float(force.angle(begin)))]
+        angle = float(rotation(force.frequency, begin, force.phase))
+        return [_sine(begin, w, force.amplitude, angle)]
     if isinstance(force, Step):
         return [SinePiece(max(force.time, begin), cosine=force.amplitude)]
     assert isinstance(force, Impulse)

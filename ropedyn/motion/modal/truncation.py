@@ -10,7 +10,7 @@ import numpy as np
 from ...base.array import Real
 from ...chain.compiled import Compiled
 from ...scene.damping import having
-from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
+from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum, rotation
 from .expansion import Expansion
 
 
@@ -77,7 +77,7 @@ def _steady(force: Sine, begin: float, omega: Real, order: int, ratio: Real) -> 
     with np.errstate(divide="ignore", invalid="ignore"):
         distance = np.maximum(x / (1 - x), np.sqrt((x**2 + lost) / ((1 - x) ** 2 + lost)))
     most = abs(force.amplitude) * w**order
-    angle = force.angle(begin) + order * math.pi / 2
+    angle = rotation(force.frequency, begin, force.phase + order * math.pi / 2)
     q, v = abs(math.sin(angle)) + distance, w / omega * (abs(math.cos(angle)) + distance)
     return np.asarray(np.where(x < 1, most * (distance + np.hypot(q, v)), math.inf))
 
@@ -87,7 +87,8 @@ def _variation(force: Force, begin: float, end: float, order: int) -> Variation:
     if isinstance(force, Sine):
         w = 2 * math.pi * force.frequency
         most = abs(force.amplitude) * w**order
-        jump = most * abs(math.sin(force.angle(begin) + order * math.pi / 2))
+        phase = force.phase + order * math.pi / 2
+        jump = most * abs(math.sin(rotation(force.frequency, begin, phase)))
         turn = w * (end - begin)
         return Variation(jump, jump + min(turn, 2 + turn * 2 / math.pi) * most)
     if isinstance(force, Step):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Complex, Real
-from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
+from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum, rotation
 from .driven import Forcing
 
 ULP = np.finfo(float).eps  # Rates are known to this part, which after many turns is far more.
@@ -86,7 +86,8 @@ def _waves(each: Sequence[Sequence[Force]], start: float, middle: float) -> tupl
     for d, force in ((d, one) for d, some in enumerate(each) for one in some):
         if isinstance(force, Sine) and force.frequency > 0:
             w = 2 * math.pi * force.frequency
-            waves.append((d, w, _sine(force.amplitude, float(force.angle(start)))))
+            angle = float(rotation(force.frequency, start, force.phase))
+            waves.append((d, w, _sine(force.amplitude, angle)))
         elif isinstance(force, Impulse) and force.time <= middle < force.time + force.duration:
             w = math.pi / force.duration
             waves.append((d, w, _sine(float(force.amplitude), w * (start - force.time))))
