@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,16 +21,16 @@ NUMBERS = 4  # of a law at most, RD_LAW_VALUES there
 
 
 class ActingLaw(NamedTuple):
-    """A law of a scene."""
+    """A law, and where it acts."""
 
-    part: int  # number among the parts
+    part: int  # number among the parts of the scene; -1: what dashpots resist there
     point: Point
     law: Law
 
     @property
     def name(self) -> str:
         """As messages name it."""
-        return f"parts[{self.part}]"
+        return "a dashpot" if self.part < 0 else f"parts[{self.part}]"
 
     @property
     def is_friction(self) -> bool:
@@ -67,9 +67,12 @@ def held_of(points: Sequence[Point], laws: Sequence[ActingLaw], force: Real) -> 
     return np.array([point in held for point in points], dtype=np.bool_)
 
 
-def core_numbers(laws: Sequence[Law]) -> tuple[NDArray[np.int32], Real]:
-    """Return the kinds and the numbers of laws as the core takes them."""
-    value = np.zeros((len(laws), NUMBERS))
+def core_laws(
+    acting: Sequence[ActingLaw],
+) -> tuple[NDArray[np.int32], Real, tuple[Callable[..., Any] | None, ...]]:
+    """Return the kinds and the numbers of laws, and what is called, as the core takes them."""
+    laws, value = [one.law for one in acting], np.zeros((len(acting), NUMBERS))
     for row, law in zip(value, laws):
         row[: len(law.value)] = law.value
-    return np.array([KINDS.index(law.kind) for law in laws], dtype=np.int32), value
+    kind = np.array([KINDS.index(law.kind) for law in laws], dtype=np.int32)
+    return kind, value, tuple(law.call for law in laws)

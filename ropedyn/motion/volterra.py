@@ -12,14 +12,12 @@ the error, each with steps half as long as the one before.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
 from ..base.answer import Cost
@@ -27,10 +25,9 @@ from ..base.array import Flags, Real
 from ..base.computed import changed, computed
 from ..base.errors import SolveError
 from ..base.progress import silent
-from ..chain.compiled import Compiled
 from ..chain.port import Point
 from ..scene.force import Samples, Step
-from .acting import ActingLaw, acting_laws, core_numbers, held_of
+from .acting import ActingLaw, acting_laws, core_laws, held_of
 from .coupled.energy import of_chain
 from .history import History, ended_by
 from .line.grid import is_even
@@ -38,7 +35,7 @@ from .linear import nearest, snapshots_of, within_tolerance
 from .modal.expansion import refuse_losses
 from .moved import Moved, against_spans, of_kinds
 from .request import TOLERANCE, Run
-from .smooth.laws import LawFailure, SmoothLaw
+from .smooth.laws import LawFailure
 from .smooth.passage import Runs, since_they_differ
 from .smooth.smooth import allowed
 
@@ -53,33 +50,6 @@ STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answe
 NONE = np.zeros(0)
 
 
-class CoreActing(NamedTuple):
-    """The laws of a model where something moves, as the core takes them."""
-
-    acting: list[ActingLaw]
-    told: list[SmoothLaw]  # as messages name them
-    kind: NDArray[np.int32]
-    value: Real
-
-    @classmethod
-    def of(cls, model: Compiled) -> CoreActing:
-        """Return the laws of a model."""
-        found = acting_laws(model)
-        told = [SmoothLaw(one.name, one.law.call) for one in found]
-        numbers = core_numbers([one.law for one in found])
-        return cls(found, told, *numbers)
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        """Where they act."""
-        return tuple(one.point for one in self.acting)
-
-    @property
-    def core(self) -> tuple[NDArray[np.int32], Real, tuple[Callable[..., Any] | None, ...]]:
-        """What `_core.volterra` takes."""
-        return self.kind, self.value, tuple(one.call for one in self.told)
-
-
 # --- one run --------------------------------------------------------------------------------------
 
 
@@ -88,9 +58,14 @@ class Stepped:
     """Forces of the laws in steps of one length."""
 
     run: Run
-    laws: CoreActing
+    laws: list[ActingLaw]
     count: int
     tolerance: float
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Where the laws act."""
+        return tuple(one.point for one in self.laws)
 
     @property
     def accuracy(self) -> float:
@@ -112,7 +87,7 @@ class Stepped:
         force = self.force
         node = np.concatenate([force[:, :1], (force[:, 1:] + force[:, :-1]) / 2, force[:, -1:]], 1)
         run, time = self.run, self.time
-        drives = (*run.drives, *self.laws.points)
+        drives = (*run.drives, *self.points)
         return run.but(drives=drives, forces=(*run.forces, *(Samples(time, f) for f in node)))
 
     def _nearest(self, run: Run) -> Moved:
@@ -122,25 +97,25 @@ class Stepped:
 
     def _linear(self, **asked: Any) -> Real:
         """Return how the points move without the laws, or as something else drives them."""
-        plain = {"responses": self.laws.points, "order": 0, "snapshots": NONE, "progress": silent}
+        plain = {"responses": self.points, "order": 0, "snapshots": NONE, "progress": silent}
         some = self.run.but(time=self.time, **(plain | asked))
         if not some.places:
-            return np.zeros((len(self.laws.points), self.count + 1))
+            return np.zeros((len(self.points), self.count + 1))
         return self._nearest(some).value
 
     @computed
     def force(self) -> Real:
         """The forces of the laws in each step, (laws, steps)."""
-        run, laws, count = self.run, self.laws, len(self.laws.points)
+        run, count = self.run, len(self.laws)
         linear = self._linear()
         step = Step(1.0, time=float(run.time[0]))
         alone: dict[str, Any] = {"forces": (step,), "loads": {}, "kicks": {}, "coarse": None}
-        answer = np.stack([self._linear(drives=(point,), **alone) for point in laws.points], axis=1)
+        answer = np.stack([self._linear(drives=(point,), **alone) for point in self.points], axis=1)
         kernel = np.ascontiguousarray(np.diff(answer, axis=2)[..., ::-1])
         force, motion = np.zeros((count, self.count)), np.zeros((count, self.count + 1))
         motion[:, 0] = linear[:, 0]
         h, size = float(self.time[1] - self.time[0]), np.zeros(count)
-        known = laws.core, float(run.time[0]), h, kernel, linear, force, motion, size
+        known = core_laws(self.laws), float(run.time[0]), h, kernel, linear, force, motion, size
         made = 0
         try:
             for first in range(0, self.count, BLOCK):
@@ -157,7 +132,7 @@ class Stepped:
     def held(self) -> Flags:
         """Which responses friction holds all the time."""
         largest = np.abs(self.force).max(axis=1)
-        return held_of(self.run.responses, self.laws.acting, largest)
+        return held_of(self.run.responses, self.laws, largest)
 
     @computed
     def free(self) -> Real:
@@ -170,9 +145,9 @@ class Stepped:
 
     def _error(self, failure: Any, when: float, residual: float) -> BaseException:
         if failure is not None:
-            return LawFailure(*failure).told(self.laws.told)
+            return LawFailure(*failure).told(self.laws)
         return Unsettled(
-            f"the laws of {', '.join(dict.fromkeys(law.name for law in self.laws.told))} do not "
+            f"the laws of {', '.join(dict.fromkeys(law.name for law in self.laws))} do not "
             f"converge at t = {when!r} s in steps of {self.time[1] - self.time[0]:.3g} s: the "
             f"residual is {residual:.3g} of their forces"
         )
@@ -237,8 +212,8 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
     count, coarse = _first(run), None
     most_steps = max(MOST_STEPS, RUNS * count)
     runs = Runs()
-    laws = CoreActing.of(run.model)
-    sharp = any(one.is_sharp for one in laws.acting)
+    laws = acting_laws(run.model)
+    sharp = any(one.is_sharp for one in laws)
     while True:
         more = _finer(run, laws, count)
         stepped = Stepped(run, laws, count, tolerance)
@@ -272,10 +247,10 @@ def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved, BaseException |
         count, coarse = more, (stepped, found)
 
 
-def _finer(run: Run, laws: CoreActing, count: int) -> int:
+def _finer(run: Run, laws: list[ActingLaw], count: int) -> int:
     """Return how many steps the next run takes: ends of others would see a turn as they did."""
     times = len(run.time) - 1
-    is_sharp = any(one.is_sharp for one in laws.acting)
+    is_sharp = any(one.is_sharp for one in laws)
     if not is_sharp or (is_even(run.time) and count < times):
         return 2 * count
     return 2 * count + (times if is_even(run.time) else 1)

@@ -185,10 +185,10 @@ class EnergyPassage(CoupledPassage):
         if system.coupling is not None:
             lost += h * np.einsum("tk,kl,tl->t", mean, system.coupling, mean, optimize=True)
         work = found.force * (way @ system.row.T)
-        for k, one in enumerate(system.acting):
+        for k, one in enumerate(system.laws):
             if one.law.kind == "power":
                 lost -= work[:, k]
-        by_laws = [k for k, one in enumerate(system.acting) if one.law.kind != "power"]
+        by_laws = [k for k, one in enumerate(system.laws) if one.law.kind != "power"]
         return np.stack([given, lost, -work[:, by_laws].sum(axis=1)])
 
     def _struck(self) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ... import _core
 from ...base.array import Real
-from ..acting import core_numbers
+from ..acting import core_laws
 from ..smooth.passage import LawPassage, Passed, Steps
 from ..smooth.system import OutputTimes
 from .system import CoupledSystem
@@ -22,14 +22,11 @@ class Stepper:
 
     def __init__(self, system: CoupledSystem, state: Real | None = None) -> None:
         self.system = system
-        count, laws = len(system.modes.sigma), len(system.acting)
+        count, laws = len(system.modes.sigma), len(system.laws)
         self.state = np.zeros((2, count)) if state is None else state
         self.pushed, self.force = np.zeros(count), np.zeros(laws)
         self.largest, self.size = np.zeros(1), np.zeros(laws)
-        self._laws = (
-            *core_numbers([one.law for one in system.acting]),
-            tuple(one.law.call for one in system.acting),
-        )
+        self._laws = core_laws(system.laws)
         self._step: tuple[float, Real, Real] | None = None
 
     def take(self, begin: float, h: float, known: Real) -> StepsTaken:

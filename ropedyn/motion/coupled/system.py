@@ -22,10 +22,9 @@ from ...chain.port import Point, is_force, local, locate, moving, ports
 from ...chain.tip import is_tip
 from ...response.moved_end import is_end
 from ...scene.tension import Tension
-from ..acting import ActingLaw, acting_laws, held_of
+from ..acting import acting_laws, held_of
 from ..request import Run
 from ..smooth.collocation import Oscillating
-from ..smooth.laws import SmoothLaw
 from ..smooth.system import LawSystem, OutputTimes, shifted
 from .modes import AllModes
 
@@ -36,7 +35,6 @@ FIRST = 512  # A run has so many steps at least.
 class CoupledSystem(LawSystem):
     """Components whose modes are coupled; the amplitudes are the first of its outputs."""
 
-    acting: list[ActingLaw]
     row: Real  # (laws, k) how modes move the laws' points
     push: Real  # (drives, k) and what drives
     pulled: Real  # (outputs, k) what those asked for see per amplitude and tension beside the mean
@@ -70,14 +68,13 @@ class CoupledSystem(LawSystem):
             looks.append(OutputTimes(slice(0, count), looks[0].time, 0))
         push = modes.rows(places)[0]
         return cls(
-            laws=[SmoothLaw(one.name, one.law.call) for one in acting],
+            laws=acting,
             modes=Oscillating(modes.sigma, modes.eigenvalue, np.eye(count), seen, swept),
             driven=[modes.driven(one, seen, swept) for one in push],
             pushes=[run.pushes[k] for k in drive],
             time=run.time,
             looks=looks,
             beyond=np.inf,
-            acting=acting,
             row=modes.rows([one.point for one in acting])[0],
             push=push,
             pulled=pulled,
@@ -96,7 +93,7 @@ class CoupledSystem(LawSystem):
     @property
     def is_plain(self) -> bool:
         """Whether nothing but the tension couples modes."""
-        return not self.acting and self.coupling is None
+        return not self.laws and self.coupling is None
 
     @property
     def falls(self) -> float:
@@ -108,11 +105,11 @@ class CoupledSystem(LawSystem):
     @property
     def is_sharp(self) -> bool:
         """Whether some law is."""
-        return any(one.is_sharp for one in self.acting)
+        return any(one.is_sharp for one in self.laws)
 
     def held(self, points: Sequence[Point], largest: Real) -> Flags:
         """Say which points laws hold, whose forces have been so large [N]."""
-        return held_of(points, self.acting, largest)
+        return held_of(points, self.laws, largest)
 
     @property
     def finer(self) -> float:

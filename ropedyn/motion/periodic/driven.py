@@ -21,7 +21,7 @@ from ...scene.tension import Tension
 from ..acting import ActingLaw, acting_laws
 from .asked import SteppedSine
 from .balance import HarmonicBalance
-from .laws import PointForces, PointLaws, StringTension, Together, asked_law
+from .laws import PointForces, StringTension, asked_law
 from .transfer import PanelledTransfer
 
 TOGETHER = 1000  # What acts and the drive must both begin anew within so many periods.
@@ -69,8 +69,7 @@ class Driven:
     def force(self) -> PointForces:
         """What acts on the points."""
         at = [self.points.index(one.point) for one in self.laws]
-        laws = PointLaws(self.laws, at, len(self.points))
-        return laws if self.tension is None else Together([laws, self.tension])
+        return PointForces(self.laws, at, len(self.points), self.tension)
 
     @computed
     def transfer(self) -> PanelledTransfer:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,71 +32,22 @@ class Felt(NamedTuple):
     by_v: Real  # (points, points, samples)
 
 
-class PointForces(Protocol):
-    """What acts on some points."""
-
-    @property
-    def samples(self) -> int:
-        """Of a period for each harmonic."""
-
-    def force(self, time: Real, u: Real, v: Real) -> Real:
-        """Return the forces of motion over a period, (points, samples)."""
-
-    def felt(self, time: Real, u: Real, v: Real) -> Felt:
-        """Return them with their slopes."""
-
-
 @dataclass(frozen=True, eq=False)
-class Weakened:
-    """A part of some forces, one for each motion."""
-
-    whole: PointForces
-    part: Real | float
-
-    @property
-    def samples(self) -> int:
-        """As many."""
-        return self.whole.samples
-
-    def force(self, time: Real, u: Real, v: Real) -> Real:
-        """Return the part of the forces."""
-        return np.asarray(self.part)[..., None, None] * self.whole.force(time, u, v)
-
-    def felt(self, time: Real, u: Real, v: Real) -> Felt:
-        """Return it with its slopes."""
-        part, felt = np.asarray(self.part)[..., None, None], self.whole.felt(time, u, v)
-        return Felt(part * felt.force, *(part[..., None] * one for one in felt[1:]))
-
-
-@dataclass(frozen=True)
-class PointLaws:
-    """Laws of points, each on its own."""
+class PointForces:
+    """What acts on some points: laws, each on its own, and a tension beside its mean."""
 
     laws: Sequence[ActingLaw]
     at: Sequence[int]  # the point of each
     points: int
+    tension: StringTension | None = None
 
     @property
     def samples(self) -> int:
-        """More where forces bend."""
-        return max(
-            (BENT if one.law.kind in ("stop", "power") else SMOOTH for one in self.laws),
-            default=SMOOTH,
-        )
-
-    def force(self, time: Real, u: Real, v: Real) -> Real:
-        """Return the forces alone."""
-        force = np.zeros(u.shape)
-        for one, k in zip(self.laws, self.at):
-            moved = time, u[..., k, :], v[..., k, :]
-            if one.law.kind == "call":
-                force[..., k, :] += asked_law(one, *moved)
-            else:
-                force[..., k, :] += KINDS[one.law.kind](one, *moved)[0]
-        return force
+        """Of a period for each harmonic: more where forces bend."""
+        return BENT if any(one.law.kind in ("stop", "power") for one in self.laws) else SMOOTH
 
     def felt(self, time: Real, u: Real, v: Real) -> Felt:
-        """Return the forces with their slopes."""
+        """Return the forces of motion over a period, and their slopes."""
         force = np.zeros(u.shape)
         by_u, by_v = np.zeros((2, *u.shape[:-2], self.points, *u.shape[-2:]))
         for one, k in zip(self.laws, self.at):
@@ -104,6 +55,9 @@ class PointLaws:
             force[..., k, :] += f
             by_u[..., k, k, :] += f_u
             by_v[..., k, k, :] += f_v
+        if self.tension is not None:
+            pull, by_pull = self.tension.felt(time, u)
+            force, by_u = force + pull, by_u + by_pull
         return Felt(force, by_u, by_v)
 
 
@@ -161,7 +115,7 @@ def asked_law(one: ActingLaw, time: Real, u: Real, v: Real) -> Real:
 def _number(
     one: ActingLaw, call: Callable[[float, float, float], float], t: float, u: float, v: float
 ) -> float:
-    where = f"parts[{one.part}].law(t={t!r}, u={u!r}, v={v!r})"
+    where = f"{one.name}.law(t={t!r}, u={u!r}, v={v!r})"
     try:
         value = call(t, u, v)
     except Exception as error:
@@ -192,39 +146,13 @@ class StringTension:
     free: Real  # (elements, points) D, of those nodes that can move
     stretching: float  # EA/2L [N/m]
     pulsation: Callable[[Real], Real]  # at times [s]
-    samples: int = SMOOTH
 
-    def force(self, time: Real, u: Real, v: Real) -> Real:
-        """Return the forces alone."""
-        return self.felt(time, u, v).force
-
-    def felt(self, time: Real, u: Real, v: Real) -> Felt:
-        """Return the forces with their slopes."""
+    def felt(self, time: Real, u: Real) -> tuple[Real, Real]:
+        """Return the forces and their slopes."""
         D = self.free
         K = D.T @ (D / self.length[:, None])
         pull = K @ u
         h = self.pulsation(time) + self.stretching * (u * pull).sum(axis=-2)
         by_u = K[..., None] * -h[..., None, None, :]
         by_u -= 2 * self.stretching * pull[..., None, :] * pull[..., None, :, :]
-        return Felt(-h[..., None, :] * pull, by_u, np.zeros_like(by_u))
-
-
-@dataclass(frozen=True)
-class Together:
-    """Several forces on the same points."""
-
-    forces: Sequence[PointForces]
-
-    @property
-    def samples(self) -> int:
-        """As many as one of them needs."""
-        return max(one.samples for one in self.forces)
-
-    def force(self, time: Real, u: Real, v: Real) -> Real:
-        """Return the forces alone."""
-        return np.sum([one.force(time, u, v) for one in self.forces], axis=0)
-
-    def felt(self, time: Real, u: Real, v: Real) -> Felt:
-        """Return the forces with their slopes."""
-        parts = [one.felt(time, u, v) for one in self.forces]
-        return Felt(*(np.sum(kind, axis=0) for kind in zip(*parts)))
+        return -h[..., None, :] * pull, by_u

@@ -225,7 +225,7 @@ def _by_steps(
         points = [asked.responses[k] for k in mine]
         look = OutputTimes(slice(0, len(points)), run.time, 0)
         system = CoupledSystem.coupled(given, component, points, [look])
-        if len(system.push) or any(one.law.call for one in system.acting):
+        if len(system.push) or any(one.law.call for one in system.laws):
             rows.append(StepsGoOn(system, mine, push))
     for f in asked.frequency.tolist():
         yield _stepped(asked, rows, f, turn(f))

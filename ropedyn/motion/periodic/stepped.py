@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from itertools import groupby, islice
 
@@ -19,7 +19,6 @@ from .asked import SteppedSine
 from .balance import HarmonicBalance
 from .continuation import ENOUGH, ROUGHLY, Branch, Place, Stuck
 from .driven import Driven, known_to
-from .laws import Weakened
 from .slipping import slipping
 from .stability import growing
 from .state import HARMONICS, MOST, SMALL, SteadyState, by_frequency, settled
@@ -163,10 +162,11 @@ def at_rest(driven: Driven, balance: HarmonicBalance, frequency: float) -> Real:
         return about.gap, about.jacobian, by_share
 
     def by_laws(x: Real, part: Real | float) -> tuple[Real, Real, Real]:
-        weak = replace(balance, force=Weakened(balance.force, part))
-        about, _ = weak.at(x, np.full(np.shape(part), omega))
+        about, _ = balance.at(x, np.full(np.shape(part), omega))
         # gap = x - linear - part H f
-        return about.gap, about.jacobian, (about.gap - x + linear) / np.asarray(part)[..., None]
+        part, laws = np.asarray(part)[..., None], about.gap - x + linear
+        whole, still = part[..., None], np.eye(x.shape[-1])
+        return x - linear + part * laws, still + whole * (about.jacobian - still), laws
 
     linear = driven.linear_motion(balance, omega)
     small = SMALL * float(np.linalg.norm(linear))

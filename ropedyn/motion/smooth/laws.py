@@ -6,46 +6,25 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
 from ...base.array import Real
 from ...base.errors import SolveError
 from ...chain.compiled import Compiled
-from ...chain.port import Point
-from ..acting import acting_laws, scene_laws
+from ...scene.parts.node import Law
+from ..acting import ActingLaw, acting_laws, core_laws, scene_laws
 from ..states import without_dashpots
 
-POWER, CALL = 0, 1  # Kinds of laws in the core's order.
 BESIDE, ASIDE = (-0.7, 0.0, 0.7), 1e-3  # Parts of a motion where slopes are looked at, and of them.
 SAME = 1e-9  # Values of a law that takes arrays are these parts of those one by one apart.
 
 
-class SmoothLaw(NamedTuple):
-    """A force on a point: -damping |v|^exponent sign(v), or what `call` says."""
-
-    name: str  # as messages name it
-    call: Callable[[Any, Any, Any], Any] | None = None
-    damping: float = 0.0
-    exponent: float = 1.0
-
-
-class PointLaw(NamedTuple):
-    """A law and where it acts."""
-
-    point: Point
-    law: SmoothLaw
-
-
-def laws_on(model: Compiled, component: tuple[str, ...]) -> list[PointLaw]:
+def laws_on(model: Compiled, component: tuple[str, ...]) -> list[ActingLaw]:
     """Return the laws of a component where something moves, and what else its points resist."""
-    found = [
-        PointLaw(one.point, SmoothLaw(one.name, one.law.call, *one.law.value))
-        for one in acting_laws(model, component)
-    ]
-    if found:
-        _, resisting = without_dashpots(model, component)
-        found += [PointLaw(r.point, SmoothLaw("a dashpot", None, r.damping)) for r in resisting]
+    found = acting_laws(model, component)
+    _, resisting = without_dashpots(model, component) if found else (model, ())
+    for point, damping in resisting:
+        found.append(ActingLaw(-1, point, Law(point[0], "power", (damping, 1.0))))
     return found
 
 
@@ -62,49 +41,41 @@ def why_not_smooth(model: Compiled) -> str:
 # --- as the core takes them ---------------------------------------------------------------------
 
 
-class CoreLaws(NamedTuple):
-    """Laws as `_core.collocate` takes them."""
-
-    kind: NDArray[np.int32]
-    value: Real
-    calls: tuple[Callable[[Any, Any, Any], Any] | None, ...]
-    arrays: NDArray[np.uint8]
-
-
-def core_laws(laws: list[SmoothLaw], time: Real, size: Real) -> CoreLaws:
+def smooth_laws(acting: list[ActingLaw], time: Real, size: Real) -> tuple[Any, ...]:
     """Return the laws, after a look at which of them take arrays; size (3, laws) of the motion."""
-    kind = np.array([CALL if law.call else POWER for law in laws], dtype=np.int32)
-    value = np.array([[law.damping, law.exponent] for law in laws]).reshape(-1, 2)
-    arrays = [bool(law.call) and takes_arrays(law, time, size[:, d]) for d, law in enumerate(laws)]
-    return CoreLaws(kind, value, tuple(law.call for law in laws), np.array(arrays, dtype=np.uint8))
+    _, value, calls = core_laws(acting)
+    called = np.array([call is not None for call in calls], dtype=np.int32)
+    arrays = [takes_arrays(call, time, size[:, d]) for d, call in enumerate(calls)]
+    return called, value[:, :2].copy(), calls, np.array(arrays, dtype=np.uint8)
 
 
-def takes_arrays(law: SmoothLaw, time: Real, size: Real) -> bool:
+def takes_arrays(call: Callable[..., Any] | None, time: Real, size: Real) -> bool:
     """Whether a law says of arrays what it says one by one."""
-    assert law.call is not None
+    if call is None:
+        return False
     count = 6
     t = np.linspace(time[0], time[-1], count)
     u = size[0] * np.array([0.0, 1.0, -0.7, 0.3, -1.0, 0.5])
     v = size[1] * np.array([0.4, -1.0, 0.0, 1.0, -0.6, 0.8])
     try:
-        whole = law.call(t.copy(), u.copy(), v.copy())
+        whole = call(t.copy(), u.copy(), v.copy())
         if not isinstance(whole, np.ndarray) or whole.shape != (count,):
             return False
-        each = np.array([law.call(*map(float, one)) for one in zip(t, u, v)], dtype=np.float64)
+        each = np.array([call(*map(float, one)) for one in zip(t, u, v)], dtype=np.float64)
         wrong = np.abs(np.asarray(whole, dtype=np.float64) - each)
     except Exception:  # the law is asked again where it acts, and says there what is wrong
         return False
     return bool((wrong <= SAME * np.abs(each).max()).all())
 
 
-def slopes(law: SmoothLaw, time: Real, size: Real) -> tuple[float, float]:
+def slopes(law: Law, time: Real, size: Real) -> tuple[float, float]:
     """Return by how much a force changes at most with displacement and velocity [N/m, N s/m].
 
     As far as a few motions within its size (3,) tell.
     """
     u, v, _ = size.tolist()
     if law.call is None:
-        return 0.0, law.damping * law.exponent * v ** (law.exponent - 1)
+        return 0.0, law.value[0] * law.value[1] * v ** (law.value[1] - 1)
     at = [(t, x * u, y * v) for t in time[[0, -1]].tolist() for x in BESIDE for y in BESIDE]
 
     def most(du: float, dv: float) -> float:
@@ -127,7 +98,7 @@ class LawFailure(NamedTuple):
     u: float
     v: float
 
-    def told(self, laws: list[SmoothLaw]) -> BaseException:
+    def told(self, laws: list[ActingLaw]) -> BaseException:
         """Return the error with what it is of."""
         one = laws[self.law]
         where = f"{one.name}.law(t={self.time!r}, u={self.u!r}, v={self.v!r})"
@@ -135,9 +106,9 @@ class LawFailure(NamedTuple):
             if isinstance(self.error, Exception):
                 self.error.add_note(f"raised by {where}")
             return self.error
-        assert one.call is not None
+        assert one.law.call is not None
         try:
-            check.number(one.call(self.time, self.u, self.v), where, "N or N m")
+            check.number(one.law.call(self.time, self.u, self.v), where, "N or N m")
         except (TypeError, ValueError) as error:
             refusal = SolveError(str(error).replace("must be", "must return"))
             refusal.__cause__ = error

@@ -13,7 +13,7 @@ from ...base.array import Real
 from ...base.errors import SolveError
 from ..modal.exponentials import is_uniform
 from .collocation import HIGHEST, STAGES, nodes, tables
-from .laws import LawFailure, core_laws
+from .laws import LawFailure, smooth_laws
 from .system import LawSystem, OutputTimes
 
 BLOCK = 1 << 18  # So many numbers of states are kept at a time,
@@ -135,7 +135,7 @@ class LawPassage:
         system, n, k = self.system, len(self.system.laws), len(self.system.modes.sigma)
         known = self._known()
         size = np.concatenate([np.abs(known).max(axis=(0, 1)), np.zeros((1, n))])
-        laws = core_laws(system.laws, system.time, size)
+        laws = smooth_laws(system.laws, system.time, size)
         points = system.modes.some(system.points, system.points)
         force, state = np.zeros((STAGES, n)), np.zeros((n, 2, k))
         done, before, table, bent = 0, math.nan, None, np.zeros(n)

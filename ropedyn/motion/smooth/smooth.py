@@ -24,7 +24,7 @@ from ...eigen.damped.rates import Rates
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ...response.moved_end import is_end
-from ..acting import acting_laws
+from ..acting import ActingLaw, acting_laws
 from ..coupled.energy import of_chain
 from ..coupled.steps import CoupledPassage
 from ..coupled.system import CoupledSystem, moving_together, refuse_points, tension_of
@@ -34,10 +34,10 @@ from ..moved import against_spans, of_kinds
 from ..request import TOLERANCE, Run
 from ..states import LARGEST, softens, without_dashpots
 from ..undamped import losses_of
-from .laws import PointLaw, laws_on, why_not_smooth
+from .laws import laws_on, why_not_smooth
 from .passage import LawPassage, Runs, reach, since_they_differ
 from .stretching import StretchedPassage
-from .system import LawQuestion, LawSystem, OutputTimes
+from .system import LawSystem, OutputTimes
 
 MODES, MOST_MODES = 64, 1024  # Of continuous spans and long chains, at first and at most,
 MOST_WORK = 5e7  # if a run with half of them has not had so many times stages: some seconds.
@@ -104,11 +104,11 @@ def _is_taken(model: Compiled, component: tuple[str, ...]) -> bool:
     return proportional(plain, Rates.of(model.scene.dampings)) is not None
 
 
-def _has_no_inertia(model: Compiled, component: tuple[str, ...], laws: list[PointLaw]) -> bool:
+def _has_no_inertia(model: Compiled, component: tuple[str, ...], laws: list[ActingLaw]) -> bool:
     chain = model.chain.only(component)
     if chain.inertia is not None:
         return False
-    for point, _ in laws:
+    for point in [one.point for one in laws]:
         node, inside = locate(model.x, point[1])
         at = component.index(point[0])
         if inside is not None or not chain.mass[chain.term_of[node], at, at] > 0:
@@ -259,10 +259,11 @@ def component_motion(
         coupled = CoupledSystem.coupled(run, component, points, looks)
         passage = StretchedPassage if coupled.is_plain else CoupledPassage
         return agree(coupled, tolerance, run, watched, passage)
-    asked = LawQuestion(component, laws_on(run.model, component), points, looks)
+    laws = laws_on(run.model, component)
+    of = partial(LawSystem.of, run, component, laws, points, looks=looks)
     count = MODES
     while True:
-        system = LawSystem.of(run, asked, count)
+        system = of(count=count)
         if not np.isfinite(system.beyond):
             return agree(system, tolerance, run, watched, LawPassage)
         near = looks[0].time + NEAR / system.beyond * np.array([[-1.0], [1.0]])
@@ -271,7 +272,7 @@ def component_motion(
         beside = found.looked.pop()
         if found.error is not None:
             return found
-        fewer = LawSystem.of(run, asked, count // 2).looking(near)
+        fewer = of(count=count // 2).looking(near)
         passed = LawPassage(fewer, found.h).passed(run.progress)
         found.stages += passed.stages
         looked = [own + more for own, more in zip(fewer.without_laws(), passed.looked)]

@@ -12,13 +12,14 @@ import numpy as np
 from ...base.array import Flags, Real
 from ...chain.port import Point, moving
 from ...scene.force import Force
+from ..acting import ActingLaw
 from ..modal.convolution import motion_under
 from ..modal.expansion import Expansion
 from ..modal.superposition import sizes
 from ..request import Run
 from ..states import States, states
 from .collocation import Oscillating
-from .laws import PointLaw, SmoothLaw, slopes
+from .laws import slopes
 
 LEAST = 32  # A run has so many steps at least,
 PER_PERIOD = 4  # and a period of the lowest mode, and of what pushes, so many.
@@ -33,20 +34,11 @@ class OutputTimes(NamedTuple):
     order: int
 
 
-class LawQuestion(NamedTuple):
-    """What is asked of a component."""
-
-    component: tuple[str, ...]
-    laws: list[PointLaw]
-    outputs: list[Point]
-    looks: list[OutputTimes]  # at the outputs
-
-
 @dataclass(frozen=True, eq=False)
 class LawSystem:
     """A component: its modes, its laws, and what moves it without them."""
 
-    laws: list[SmoothLaw]
+    laws: list[ActingLaw]
     modes: Oscillating  # of inputs at the laws' points; outputs there come first
     driven: list[Expansion]  # of each drive: the same outputs
     pushes: list[Force | float]  # of each drive
@@ -55,15 +47,23 @@ class LawSystem:
     beyond: float  # lowest angular frequency that is left out [rad/s]
 
     @classmethod
-    def of(cls, run: Run, asked: LawQuestion, count: int) -> LawSystem:
-        """Find the modes."""
-        component, laws, outputs, looks = asked
+    def of(
+        cls,
+        run: Run,
+        component: tuple[str, ...],
+        laws: list[ActingLaw],
+        outputs: list[Point],
+        *,
+        looks: list[OutputTimes],
+        count: int,
+    ) -> LawSystem:
+        """Find the modes; looks are at the outputs."""
         n, drive = len(laws), [k for k, p in enumerate(run.places) if moving(p) in component]
         points = [one.point for one in laws]
         inputs = [*points, *(run.places[k] for k in drive)]
         found = states(run.model, component, inputs, [*points, *outputs], modes=count)
         return cls(
-            [one.law for one in laws],
+            laws,
             oscillating(found, n),
             [expansion(found, n + k) for k in range(len(drive))],
             [run.pushes[k] for k in drive],
@@ -166,7 +166,7 @@ class LawSystem:
         fast = omega * h > 1
         if np.isfinite(self.beyond) or not (fast.any() and size.size):
             return np.zeros(1)
-        each = [slopes(law, self.time, one) for law, one in zip(self.laws, size.T)]
+        each = [slopes(law.law, self.time, one) for law, one in zip(self.laws, size.T)]
         stiff, damps = np.abs(np.array(each)).T
         push = self.modes.push[fast, : len(self.laws)] ** 2
         rate = push @ damps / 2 + push @ stiff / (2 * omega[fast])
