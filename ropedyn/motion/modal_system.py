@@ -91,7 +91,10 @@ def modal_system(model: Compiled, number: int | None) -> ModalSystem:
         raise SolveError(
             f"modes must be at most {there}, the transverse ones this model has, got {number}"
         )
-    return parts[0] if len(parts) == 1 else _together(parts, number)
+    if len(parts) == 1:
+        return parts[0]
+    whole = together(parts)
+    return whole.only(np.argsort(whole.eigenvalue, kind="stable")[:number])
 
 
 def transverse(model: Compiled) -> list[tuple[str, ...]]:
@@ -99,14 +102,13 @@ def transverse(model: Compiled) -> list[tuple[str, ...]]:
     return [c for c in model.components if "z" in roles(c)]
 
 
-def _together(parts: Sequence[ModalSystem], number: int | None) -> ModalSystem:
-    """Return the lowest modes of systems that nothing ties to each other."""
+def together(parts: Sequence[ModalSystem]) -> ModalSystem:
+    """Return systems that nothing ties to each other, one after another."""
     from scipy.linalg import block_diag
 
     value = np.concatenate([part.eigenvalue for part in parts])
-    geometric = block_diag(*(part.geometric for part in parts))
-    damping = block_diag(*(part.damping for part in parts))
-    return ModalSystem(value, geometric, damping).only(np.argsort(value, kind="stable")[:number])
+    both = (block_diag(*each) for each in zip(*((one.geometric, one.damping) for one in parts)))
+    return ModalSystem(value, *both)
 
 
 def _reduced(model: Compiled, component: tuple[str, ...], basis: _Basis) -> ModalSystem:

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..base.array import Complex, Flags, Index, Real
+from ..base.array import Flags, Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import Chain
 from ..chain.compiled import Compiled, with_plain_lumps
@@ -68,39 +68,11 @@ class States:
     ratio: float  # of their damping, as a ratio
     wrong: Real  # (k,) rounding of push and seen, relative
     reach: Real  # (outputs, k) as much as what points yield lets modes move them, as seen
-    # (outputs, inputs) sum of what left-out modes have as flexibility, in magnitude, at most;
-    # infinite of internal forces, tips and moved ends
-    left: Real
 
     @property
     def modes(self) -> int:
         """How many modes there are."""
         return len(self.sigma)
-
-    def at(self, s: Complex) -> Complex:
-        """Return the transfer functions at rates s [rad/s], shape (outputs, inputs, n)."""
-        own = 1 / (s * s + 2 * np.multiply.outer(self.sigma, s) + self.square[:, None])
-        row = self.seen[:, :, None] + np.multiply.outer(self.swept, s)
-        push = self.push[:, :, None] * (1 + np.multiply.outer(self.lead, s))
-        value = np.einsum("okn,kn,kin->oin", row, own, push, optimize=True)
-        late = self.late[:, :, None] / (1 + self.gamma * s)
-        return np.asarray(value + self.now[:, :, None] + late)
-
-    def bound(self, omega: Real) -> Real:
-        """Bound how far `at` is from the exact response at omega, (outputs, inputs, n)."""
-        # a left-out mode is 1/(g lambda + p), p = s^2 + drag s, in place of 1/(g lambda); the
-        # largest share |p|/|g lambda + p| is that of the lowest, whose lambda is beyond^2
-        omega = np.asarray(omega, dtype=np.float64)
-        if not np.isfinite(self.beyond):
-            return np.zeros((*self.left.shape, len(omega)))
-        stiff = np.abs(1 + 1j * self.gamma * omega)
-        moves = np.abs(-(omega**2) + 1j * self.drag * omega)
-        moves += 2 * self.ratio * omega * self.beyond
-        room = stiff * self.beyond**2 - moves
-        share = np.divide(moves, room, out=np.full(len(omega), np.inf), where=room > 0)
-        with np.errstate(invalid="ignore"):
-            far = self.left[:, :, None] * (share / stiff)
-        return np.nan_to_num(far, nan=0.0, posinf=np.inf)
 
 
 # --- what stands at single points ---------------------------------------------------------------
@@ -230,9 +202,6 @@ def states(
         eigenvalue, circles = _otherwise(eigenvalue, error, circles)
     asked = UndampedResponses(model, component, list(inputs), list(outputs))
     own, push, seen, reach, rest = _parted_points(asked, eigenvalue, circles, beyond, other=other)
-    left = np.zeros(rest.shape)
-    if np.isfinite(beyond):
-        left = asked.bounded(lambda own: own.parted(eigenvalue, circles).rest).T
     omega = np.sqrt(np.maximum(eigenvalue, 0.0))
     gamma, drag = closed.soften.real, closed.drag.real
     sigma = ratio * omega + (drag + gamma * eigenvalue) / 2
@@ -253,7 +222,6 @@ def states(
         ratio=float(ratio.max(initial=0.0)),
         wrong=(circles.rounding + np.divide(*mixed(eigenvalue, circles, sigma)))[own],
         reach=reach,
-        left=left,
     )
 
 

@@ -39,17 +39,8 @@ ORDERS = (0, 1, 2)
 def expansion(sigma, square, a=1.0, b=0.0, rest=0.0):
     """One drive, one response, modes side by side."""
     sigma, square = np.atleast_1d(sigma).astype(float), np.atleast_1d(square).astype(float)
-    none, matrix = np.zeros(0), np.zeros((1, 1))
     a, b = (np.broadcast_to(each, (1, 1, len(sigma))).astype(float) for each in (a, b))
-    return Expansion(
-        sigma, square, a, b, none, np.zeros((1, 1, 0)), matrix + rest, matrix, math.inf
-    )
-
-
-def real_rates(p, r, rest=0.0):
-    """Real rates alone."""
-    none = expansion([], [])
-    return none._replace(p=np.array(p), r=np.array([[r]], dtype=float), rest=none.rest + rest)
+    return Expansion(sigma, square, a, b, np.full((1, 1), rest), np.zeros((1, 1)))
 
 
 MODE = {kind: expansion(*rates) for kind, rates in KINDS.items()}
@@ -61,7 +52,7 @@ MANY = expansion(
     a=np.cos(np.arange(15.0)),
     b=1e-3 * np.sin(np.arange(15.0)),
     rest=1e-6,
-)._replace(p=np.array([-30.0, 0.0]), r=np.array([[[0.02, -0.01]]]))
+)._replace(late=np.full((1, 1), 7e-4), lag=1 / 30)
 GRID = np.arange(600) / 1024
 SMALLEST = 1e-290
 """Of a force whose motion has all its digits: doubles below 2e-308 lose them."""
@@ -259,14 +250,12 @@ def test_orders_are_derivatives(name):
         )
 
 
-def test_real_rates_are_residues():
-    p, r = np.array([-30.0, 0.0, 2.0]), np.array([0.5, 2.0, -1.0])
-    modes = real_rates(p, r, rest=0.25)
+def test_what_relaxes_does_so_at_its_own_rate():
+    modes = expansion([], [], rest=0.25)._replace(late=np.full((1, 1), 2.0), lag=1 / 30)
     value = convolve(modes, 0, Step(3.0), GRID, 0)[0]
-    growth = np.stack([np.expm1(-30 * GRID) / -30, GRID, np.expm1(2 * GRID) / 2])
-    assert value == pytest.approx(3 * (0.25 + r @ growth), rel=1e-13)
+    assert value == pytest.approx(3 * (0.25 - 2 * np.expm1(-30 * GRID)), rel=1e-13)
     speed = convolve(modes, 0, Step(3.0), GRID, 1)[0]
-    assert speed == pytest.approx(3 * r @ np.exp(np.outer(p, GRID)), rel=1e-13)
+    assert speed == pytest.approx(180 * np.exp(-30 * GRID), rel=1e-13)
 
 
 def test_what_follows_at_once_is_the_force_itself():
@@ -333,16 +322,15 @@ def test_step_at_the_last_time_has_just_begun():
 
 
 def test_letting_go_is_the_rest_less_a_step():
-    held = MANY._replace(p=MANY.p[:1], r=MANY.r[:, :, :1])
-    held = held._replace(square=np.where(held.square == 0, 1e4, held.square))
-    static = (held.a[0, 0] / held.square).sum() - held.r[0, 0, 0] / held.p[0] + held.rest[0, 0]
+    held = MANY._replace(square=np.where(MANY.square == 0, 1e4, MANY.square))
+    static = (held.a[0, 0] / held.square).sum() + held.late[0, 0] + held.rest[0, 0]
     for order, still in ((0, static), (1, 0), (2, 0)):
         value = release(held, 0, 7.0, GRID, order)
         expected = 7 * still - convolve(held, 0, Step(7.0), GRID, order)
         assert np.abs(value - expected).max() <= 1e-12 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("modes", [MODE["rigid"], MODE["growing"], real_rates([0.0], [1.0])])
+@pytest.mark.parametrize("modes", [MODE["rigid"], MODE["growing"]])
 def test_what_has_no_rest_is_not_let_go(modes):
     with pytest.raises(rd.SceneError, match="no rest"):
         release(modes, 0, 1.0, GRID, 0)

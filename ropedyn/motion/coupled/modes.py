@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ from ...chain.port import Point, is_force, locate, moving, ports
 from ...eigen.sensitivity import by_tension
 from ...scene.damping import SECTION, TENSION, factors
 from ..modal.expansion import Expansion
-from ..modal_system import ChainModes, ModalSystem, chain_modes
+from ..modal_system import ChainModes, ModalSystem, chain_modes, together
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,33 +32,14 @@ class AllModes:
         return cls(model, {one: chain_modes(model, one) for one in parts})
 
     @computed
-    def eigenvalue(self) -> Real:
-        """Those without damping [rad^2/s^2], (k,)."""
-        return np.concatenate([one.system.eigenvalue for one in self.each.values()])
+    def system(self) -> ModalSystem:
+        """Their equations, side by side."""
+        return together([one.system for one in self.each.values()])
 
-    @computed
+    @property
     def sigma(self) -> Real:
         """How they are damped, each for itself [1/s], (k,)."""
-        return np.concatenate([np.diag(one.system.damping) / 2 for one in self.each.values()])
-
-    @computed
-    def form(self) -> Real:
-        """Integral of the products of slopes in a plane, (k, k)."""
-        return self._joined(lambda one: one.geometric)
-
-    @computed
-    def coupling(self) -> Real | None:
-        """What dampers couple, (k, k); None where they couple none."""
-        if all(one.system.coupling is None for one in self.each.values()):
-            return None
-        return self._joined(
-            lambda one: np.zeros_like(one.geometric) if one.coupling is None else one.coupling
-        )
-
-    def _joined(self, of: Callable[[ModalSystem], Real]) -> Real:
-        from scipy.linalg import block_diag
-
-        return np.asarray(block_diag(*(of(one.system) for one in self.each.values())))
+        return np.diag(self.system.damping) / 2
 
     def rows(self, points: Sequence[Point]) -> Real:
         """Return what points see per q and q' of the modes, and per q and tension beside the mean.
@@ -70,7 +51,7 @@ class AllModes:
 
         Shape (3, points, k).
         """
-        total = np.zeros((3, len(points), len(self.eigenvalue)))
+        total = np.zeros((3, len(points), len(self.system.eigenvalue)))
         begin = 0
         for component, one in self.each.items():
             mine = slice(begin, begin + len(one.shape))
@@ -84,17 +65,8 @@ class AllModes:
     def driven(self, push: Real, seen: Real, swept: Real) -> Expansion:
         """Return what a force that pushes modes moves outputs seen q + swept q'."""
         none = np.zeros((1, len(seen)))
-        return Expansion(
-            self.sigma,
-            self.eigenvalue,
-            a=(seen * push)[None],
-            b=(swept * push)[None],
-            p=np.zeros(0),
-            r=none[..., None][..., :0],
-            rest=none,
-            bound=none,
-            beyond=np.inf,
-        )
+        a, b = (seen * push)[None], (swept * push)[None]
+        return Expansion(self.sigma, self.system.eigenvalue, a, b, none, none)
 
     def _moved(self, component: tuple[str, ...], shape: Real, point: Point) -> Real:
         at = ports(self.model.chain.only(component), self.model.x, component, [point])

@@ -69,7 +69,7 @@ class CoupledSystem(LawSystem):
         push = modes.rows(places)[0]
         return cls(
             laws=acting,
-            modes=Oscillating(modes.sigma, modes.eigenvalue, np.eye(count), seen, swept),
+            modes=Oscillating(modes.sigma, modes.system.eigenvalue, np.eye(count), seen, swept),
             driven=[modes.driven(one, seen, swept) for one in push],
             pushes=[run.pushes[k] for k in drive],
             time=run.time,
@@ -78,8 +78,8 @@ class CoupledSystem(LawSystem):
             row=modes.rows([one.point for one in acting])[0],
             push=push,
             pulled=pulled,
-            form=modes.form,
-            coupling=modes.coupling,
+            form=modes.system.geometric,
+            coupling=modes.system.coupling,
             stretching=(rope.axial_stiffness or 0.0) / rope.length if stretches else 0.0,
             pulsation=varies.pulsation if varies and varies.pulsates else None,
             pulsates_at=varies.frequency if varies and varies.pulsates else 0.0,

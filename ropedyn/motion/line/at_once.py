@@ -44,8 +44,7 @@ def _oscillators(h: Real, omega: float, slower: float) -> Expansion:
     b, a = (np.asarray(ab[..., k::2] * slow ** (k + 1), dtype=np.float64) for k in range(2))
     sigma = np.asarray(slow * PAIRS.mean(axis=1), dtype=np.float64)
     square = np.asarray(slow**2 * PAIRS.prod(axis=1), dtype=np.float64)
-    none, still = np.zeros((*h.shape[:2], 0)), np.zeros(h.shape[:2])
-    return Expansion(sigma, square, a, b, np.zeros(0), none, h[..., 0], still, math.inf)
+    return Expansion(sigma, square, a, b, h[..., 0], np.zeros(h.shape[:2]))
 
 
 def _fitted(value: Complex) -> Real:

@@ -51,7 +51,7 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
 def release(expansion: Expansion, drive: int, load: float, time: Real, order: int) -> Real:
     """Return the motion after a static load is let go at the first time, shape (responses, t)."""
     modes = _oscillators(expansion, drive)
-    growing = np.concatenate([expansion.square <= 0, expansion.p >= 0])
+    growing = modes.square <= 0
     if (growing & ((modes.a != 0) | (modes.b != 0)).any(axis=0)).any():
         raise SceneError("start must be None where the rope has no rest under a load")
     rest = load * np.divide(1.0, modes.square, out=np.zeros_like(modes.square), where=~growing)
@@ -63,14 +63,13 @@ def release(expansion: Expansion, drive: int, load: float, time: Real, order: in
 
 
 def _oscillators(expansion: Expansion, drive: int) -> Oscillators:
-    """Return the modes that a drive moves; r/(s - p) is r (s - p)/(s - p)^2."""
-    a, b, p, r = expansion.a[drive], expansion.b[drive], expansion.p, expansion.r[drive]
-    return Oscillators(
-        np.concatenate([expansion.sigma, -p]),
-        np.concatenate([expansion.square, p * p]),
-        np.concatenate([a, -r * p], axis=1),
-        np.concatenate([b, r], axis=1),
-    )
+    """Return the modes that a drive moves; late/(1 + lag s) is late (1 + lag s)/(1 + lag s)^2."""
+    sigma, square, a, b = *expansion[:2], expansion.a[drive], expansion.b[drive]
+    if not expansion.lag:
+        return Oscillators(sigma, square, a, b)
+    rate, late = 1 / expansion.lag, expansion.late[drive, :, None]
+    one, other = np.append(a, late * rate**2, axis=1), np.append(b, late * rate, axis=1)
+    return Oscillators(np.append(sigma, rate), np.append(square, rate**2), one, other)
 
 
 def refuse_infinite(value: Real, time: Real) -> Real:

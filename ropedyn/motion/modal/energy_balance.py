@@ -100,9 +100,8 @@ class DrivenModes:
     def of(cls, run: Run, share: Share) -> DrivenModes:
         """Take what drives a component."""
         own = share.expansion
-        lag = -1 / float(own.p[0]) if len(own.p) else 0.0
-        rest = own.r[..., 0] * lag if lag else own.rest
-        return cls(run.time, [run.pushes[d] for d in share.drive], own, lag, rest)
+        rest = own.late if own.lag else own.rest
+        return cls(run.time, [run.pushes[d] for d in share.drive], own, own.lag, rest)
 
     @classmethod
     def without(cls, run: Run, drive: Sequence[int], rest: Real, lag: float) -> DrivenModes:
@@ -175,8 +174,8 @@ class DrivenModes:
         """Return what some modes have of the velocity of each drive, (drives, t)."""
         own, still = self.own, np.zeros(self.rest.shape)
         a, b = own.a[..., modes], own.b[..., modes]
-        some = own._replace(sigma=own.sigma[modes], square=own.square[modes], a=a, b=b, rest=still)
-        some = some._replace(p=np.zeros(0), r=np.zeros((*still.shape, 0)))
+        some = own._replace(sigma=own.sigma[modes], square=own.square[modes], a=a, b=b)
+        some = some._replace(rest=still, late=still, lag=0.0)
         moved = [motion_under(some, d, one, time, 1) for d, one in enumerate(self.given)]
         return np.asarray(np.sum(moved, axis=0))
 
@@ -192,8 +191,7 @@ class DrivenModes:
         """Return y of each drive, (drives, t)."""
         if not self.lag:
             return self._force(time)
-        p = np.array([-1 / self.lag])
-        unit = _nothing(0, 1)._replace(p=p, r=np.full((1, 1, 1), 1 / self.lag))
+        unit = _nothing(0, 1)._replace(late=np.ones((1, 1)), lag=self.lag)
         return np.stack([motion_under(unit, 0, _smooth(one), time, order)[0] for one in self.given])
 
     def _force(self, time: Real) -> Real:
@@ -254,11 +252,8 @@ class DrivenModes:
 
 def _nothing(modes: int, responses: int) -> Expansion:
     """Return an expansion of one drive in which nothing moves."""
-    none, still = np.zeros((1, responses, 0)), np.zeros((1, responses))
-    real = np.zeros((1, responses, modes))
-    return Expansion(
-        np.zeros(modes), np.zeros(modes), real, real, np.zeros(0), none, still, still, math.inf
-    )
+    rate, real, still = np.zeros(modes), np.zeros((1, responses, modes)), np.zeros((1, responses))
+    return Expansion(rate, rate, real, real, still, still)
 
 
 def _smooth(given: Force | float) -> Force | float:

@@ -42,24 +42,23 @@ LARGEST, MANY = 1000, 400
 class Expansion(NamedTuple):
     """What responses are to drives, in the rate s of a motion e^(s t).
 
-        H(s) = rest + sum_k (a_k + b_k s)/(s^2 + 2 sigma_k s + square_k) + sum_j r_j/(s - p_j)
+        H(s) = rest + late/(1 + lag s) + sum_k (a_k + b_k s)/(s^2 + 2 sigma_k s + square_k)
 
     Pairs are conjugate rates -sigma +- i sqrt(square - sigma^2), rigid motion (sigma = square = 0),
-    modes that decay without oscillation by two rates, or grow (square < 0); p_j are real rates
-    alone.
+    modes that decay without oscillation by two rates, or grow (square < 0).
     """
 
     sigma: Real  # (k,) [1/s]
     square: Real  # (k,) [rad^2/s^2]
     a: Real  # (drives, responses, k)
     b: Real  # (drives, responses, k); 0 where damping is proportional
-    p: Real  # (j,) [1/s]
-    r: Real  # (drives, responses, j)
-    rest: Real  # (drives, responses) of what is left out: it follows at once
+    rest: Real  # (drives, responses) of what is left out: it follows at once,
+    late: Real  # (drives, responses) or relaxes
+    lag: float = 0.0  # [s]; 0: nothing does
     # (drives, responses) |H_out(0)| of the modes that are left out, at most; 0 where none is
-    bound: Real
+    bound: Real = np.zeros((0, 0))
     # Angular frequency of the lowest that is left out [rad/s], infinite where none is
-    beyond: float
+    beyond: float = math.inf
     wrong: Real | float = 0.0  # (k,) error of each square, relative
     # (k,) how far each sigma is off, as few digits tell which of close modes is which [1/s]
     mixed: Real | float = 0.0
@@ -67,7 +66,7 @@ class Expansion(NamedTuple):
     @property
     def modes(self) -> int:
         """How many modes are summed."""
-        return len(self.sigma) + len(self.p)
+        return len(self.sigma) + bool(self.lag)
 
 
 class Share(NamedTuple):
@@ -188,11 +187,9 @@ def _closed(
     a, rest = parted.residue, parted.rest if np.isfinite(beyond) else parted.left
     b = np.where(power[:, :, None] == 1, soften, 0.0) * a
     a *= np.where(power[:, :, None] == 0, 1.0, stiff)
-    p, r = np.zeros(0), np.zeros((*rest.shape, 0))
-    if soften != 0:
-        # what is left out of motion by forces is held by g too
-        p, r = np.array([-stiff / soften]), np.where(power == 0, rest / soften, 0.0)[:, :, None]
-        rest = np.where(power == 0, 0.0, rest)
+    # what is left out of motion by forces is held by g too
+    late = np.where((power == 0) & (soften != 0), rest / stiff, 0.0)
+    rest = np.where((power == 0) & (soften != 0), 0.0, rest)
     bound = np.zeros(rest.shape)
     if not np.isfinite(beyond):  # but lumps of negative inertia
         beyond = slowest_lump(asked.model, asked.component) ** 2
@@ -203,7 +200,9 @@ def _closed(
     lowest = float(np.sqrt(max(beyond, 0.0)))
     wrong = np.divide(error, np.abs(eigenvalue), out=np.ones_like(error), where=eigenvalue != 0)
     off, _ = mixed(eigenvalue, circles, sigma)
-    return Expansion(sigma, stiff * eigenvalue, a, b, p, r, rest, bound, lowest, wrong, off)
+    return Expansion(
+        sigma, stiff * eigenvalue, a, b, rest, late, soften / stiff, bound, lowest, wrong, off
+    )
 
 
 def _left(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> Real:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Complex, Real
+from ..modal.exponentials import rates
 
 DOUBLE = 1e-10  # Equal poles are split by this share of their modulus squared.
 SHARE = 0.25  # Stiffness of coupled modes is known to this times a part of its largest.
@@ -65,11 +66,7 @@ def _oscillators(sigma: Real, square: Real, W: Real, span: float) -> Poles:
     """Return the poles of r'' + 2 sigma r' + square r, with q = W r."""
     least = np.maximum(DOUBLE * np.maximum(sigma**2, np.abs(square)), (STILL / span) ** 2)
     square = np.where(np.abs(square - sigma**2) < least, sigma**2 + least, square)
-    split, swings = np.sqrt(np.abs(sigma**2 - square)), square > sigma**2
-    far = -(sigma + np.copysign(split, sigma))
-    close = np.divide(square, far, out=np.zeros_like(far), where=far != 0)
-    one = np.where(swings, -sigma + 1j * split, close)
-    other = np.where(swings, -sigma - 1j * split, far)
+    swings, (one, other) = square > sigma**2, rates(sigma, square).T
     # r = z_1 + z_2, r' = p_1 z_1 + p_2 z_2, and of two conjugate poles one stands for both
     twice = np.where(swings, 2.0, 1.0)
     p = np.concatenate([one, other[~swings]])

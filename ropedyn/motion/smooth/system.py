@@ -137,13 +137,8 @@ class LawSystem:
         """Return what drives move, without laws, (rows, t)."""
         value = np.zeros((len(self.modes.seen[rows]), len(time)))
         for one, push in zip(self.driven, self.pushes):
-            some = one._replace(
-                a=one.a[:, rows],
-                b=one.b[:, rows],
-                r=one.r[:, rows],
-                rest=one.rest[:, rows],
-                bound=one.bound[:, rows],
-            )
+            a, b, rest, late = (each[:, rows] for each in one[2:6])
+            some = one._replace(a=a, b=b, rest=rest, late=late)
             value += motion_under(some, 0, push, time, order)
         return value
 
@@ -228,15 +223,13 @@ def oscillating(found: States, laws: int) -> Oscillating:
 
 def expansion(found: States, which: int) -> Expansion:
     """Return what one input moves as an expansion of one drive."""
-    push, lag, lead = found.push[:, which], found.gamma, found.lead[which]
+    push, lead = found.push[:, which], found.lead[which]
     return Expansion(
         sigma=found.sigma,
         square=found.square,
         a=(found.seen * push)[None],
         b=((found.swept + lead * found.seen) * push)[None],
-        p=np.array([-1 / lag] if lag else []),
-        r=found.late[None, :, which, None] / lag if lag else np.zeros((1, len(found.late), 0)),
         rest=found.now[None, :, which],
-        bound=found.left[None, :, which],
-        beyond=found.beyond,
+        late=found.late[None, :, which],
+        lag=found.gamma,
     )
