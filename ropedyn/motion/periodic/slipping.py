@@ -19,6 +19,7 @@ from ...scene.force import Sine
 from ...signal.spectrum import amplitudes
 from ..coupled.steps import Stepper
 from ..coupled.system import CoupledSystem, moving_together
+from ..moved import of_kinds
 from ..phases.components import Look, Moving, moving_components, rest, why_not_events
 from ..phases.pieces import pieces
 from ..phases.walk import PhaseWalk, Visit
@@ -265,8 +266,9 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
     """Follow the motion until it stays."""
     periods, share, calm = math.ceil(WINDOW / turn) * turn, (asked.tolerance or TOLERANCE) / 2, 0
     decays = Decays(max(_longest(rows, frequency) // periods, 4))
-    # changes of what is seen, of all motion and of how periods differ from their mean
-    changes: list[list[float]] = [[], [], []]
+    # changes of what is seen, by kinds, of all motion and of how periods differ from their mean
+    watched: list[Real] = []
+    moves, differs = changes = list[float](), list[float]()
     before: tuple[Complex, ...] = ()
     for k in range(max(LONGEST // periods, LOOKS + 1)):
         found = np.zeros(len(asked.responses), dtype=np.complex128)
@@ -278,14 +280,15 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
         modes = np.concatenate([now.modes for now in each])
         motion = modes.mean(axis=1)
         unlike = modes.reshape(len(modes), -1, turn).mean(axis=2) - motion[:, None]
-        for past, was, now in zip(changes, before, (found, motion, unlike)):
+        if before:
+            watched.append(of_kinds(np.abs(found - before[0]), asked.responses))
+        for past, was, now in zip(changes, before[1:], (motion, unlike)):
             past.append(float(np.abs(now - was).max(initial=0.0)))
         before = found, motion, unlike
         if k == 0:  # what symmetry keeps at rest may grow too
             speed = DISTURBED * 2 * math.pi * frequency * np.abs(motion).max(initial=0.0)
             for one in rows:
                 one.disturb(speed * np.random.default_rng(0).normal(size=len(one.sigma)))
-        watched, moves, differs = changes
         if not decays.go_on(moves):
             break
         if len(moves) < LOOKS:
@@ -297,19 +300,27 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
             continue
         # amplitudes may hang back for a while, as where friction just begins to slip
         goes = ahead / max(moves[-LOOKS:]) if ahead > 0 else 0.0
-        asks, least = share * np.abs(found).max(), rounded.max()
-        left = max(_left(watched, max(ALIKE * asks, least)), goes * max(watched[-LOOKS:]))
-        is_calm = left <= max(asks, least)
+        asks, seen = share * of_kinds(np.abs(found), asked.responses), np.array(watched)
+        least = of_kinds(rounded, asked.responses)
+        left = _seen_left(seen.max(axis=1), max(ALIKE * asks.max(), least.max()), goes)
+        is_calm = left <= max(asks.max(), least.max())
         calm += is_calm
         if is_calm and calm > LOOKS:
-            error = np.where(found == 0, 0.0, np.maximum(left, rounded) + folded)
-            return Settled(found, error, bool(apart <= most))
-    change = changes[1][-1] / np.abs(motion).max()
+            # rotations may be far larger, in their unit, than displacements
+            own = [_seen_left(*one, goes) for one in zip(seen.T, np.maximum(ALIKE * asks, least))]
+            error = np.maximum(np.minimum(own, left), rounded) + folded
+            return Settled(found, np.where(found == 0, 0.0, error), bool(apart <= most))
+    change = moves[-1] / np.abs(motion).max()
     raise SolveError(
         f"frequency {frequency!r} Hz has no steady state of its period: after "
         f"{(k + 1) * periods} periods the motion changes by {change:.1e} of itself in "
         f"{periods} periods"
     )
+
+
+def _seen_left(changes: Real, least: float, goes: float) -> float:
+    """Return what those of one kind add up to, or as much as all motion still does."""
+    return max(_left(changes.tolist(), least), goes * float(changes[-LOOKS:].max()))
 
 
 def _longest(rows: Sequence[Goes], frequency: float) -> int:
