@@ -353,6 +353,21 @@ class Sum(Force):
         return max((force.bandwidth for force in self.forces), default=0.0)
 
 
+def peak(force: Force, time: Real) -> float:
+    """Return the largest value from the first of some times to the last, of parts together."""
+    if isinstance(force, Sum):
+        return sum(peak(one, time) for one in force.forces)
+    begin, end = float(time[0]), float(time[-1])
+    breaks = np.array([begin, *(at for at in force.breaks if begin < at < end), end])
+    at = np.concatenate([time, (breaks[1:] + breaks[:-1]) / 2])
+    value = np.abs(force.value(at))
+    if force.highest > 0:  # times may be those where a sine is zero
+        rate = np.abs(force.rate(at))
+        whole = np.hypot(value, rate / (2 * np.pi * force.highest))
+        value = np.minimum(whole, value + rate * (end - begin))
+    return float(value.max())
+
+
 def is_sampled(force: Force) -> bool:
     """Whether it bends at every time that is asked for."""
     if isinstance(force, Sum):

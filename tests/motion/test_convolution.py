@@ -15,7 +15,7 @@ from ropedyn.motion.modal.expansion import Expansion
 from ropedyn.motion.modal.exponentials import _circle, _close, is_uniform
 from ropedyn.motion.modal.recurrence import changes
 from ropedyn.motion.modal.truncation import _variation, left_out
-from ropedyn.scene.force import Chirp, Impulse, Samples, Sine, Step, Sum
+from ropedyn.scene.force import Chirp, Impulse, Samples, Sine, Step, Sum, peak
 
 # sigma [1/s], square [rad^2/s^2]
 KINDS = {
@@ -291,6 +291,22 @@ def test_motion_is_linear_in_the_force(factor, frequency, phase):
     parts = [convolve(MANY, 0, Sine(1.0, frequency, phase=p), time, 0) for p in (0, math.pi / 2)]
     again = math.cos(phase) * parts[0] + math.sin(phase) * parts[1]
     assert one == pytest.approx(again, abs=1e-12 * max(np.abs(part).max() for part in parts))
+
+
+@pytest.mark.parametrize(
+    ("force", "largest"),
+    [
+        (Sine(5.0, 8.0), 5.0),
+        (Sine(5.0, 1e-9), 5e-9 * math.pi),  # twice what it reaches
+        (Sum((Sine(5.0, 8.0), Step(2.0))), 7.0),
+        (Impulse(math.pi / 500, time=0.1, duration=2e-3), 4.93480220054),
+        (Samples(np.array([0.0, 0.1, 0.25]), np.array([0.0, 3.0, 0.0])), 3.0),
+    ],
+)
+def test_peak_is_that_between_times_too(force, largest):
+    """Of a sine at the times that it is zero it was nothing: what rounds it had no size."""
+    time = np.array([0.0, 0.125, 0.25]) if not isinstance(force, Samples) else force.time
+    assert peak(force, time) == pytest.approx(largest, rel=1e-12)
 
 
 @pytest.mark.parametrize("name", ["step", "blow", "half sine"])

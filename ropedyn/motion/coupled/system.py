@@ -23,8 +23,10 @@ from ...chain.tip import is_tip
 from ...response.moved_end import is_end
 from ...scene.tension import Tension
 from ..acting import acting_laws, held_of
+from ..modal.superposition import sizes
 from ..request import Run
 from ..smooth.collocation import Oscillating
+from ..smooth.laws import slopes
 from ..smooth.system import LawSystem, OutputTimes, shifted
 from .modes import AllModes
 
@@ -122,6 +124,31 @@ class CoupledSystem(LawSystem):
         span = float(self.time[-1] - self.time[0])
         plain = min(super().first_step, span / FIRST)
         return min(plain, 1 / (4 * self.pulsates_at)) if self.pulsates_at else plain
+
+    def unmoved(self, h: float, size: Real) -> Real:
+        """Return what steps do not see of laws and of coupling by dampers, first look, (o,).
+
+        The forces of a mode that turns within a step add up to nothing in it: its own frequency is
+        off, and others are moved by a share of it.
+        """
+        omega, span = np.sqrt(np.abs(self.modes.square)), float(self.time[-1] - self.time[0])
+        fast, look = omega * h > 1, self.looks[0]
+        if not fast.any():
+            return np.zeros(1)
+        each = [sizes(one, 0, push, self.time, 0) for one, push in zip(self.driven, self.pushes)]
+        most = sum(each, np.zeros(self.modes.seen.shape))[self.points].diagonal()
+        row = np.abs(self.row)
+        size = np.stack([row @ (most * omega**n) for n in range(3)])
+        laws = [slopes(one.law, self.time, moves) for one, moves in zip(self.laws, size.T)]
+        stiff, damps = np.abs(np.array(laws)).reshape(-1, 2).T
+        C = (row.T * damps) @ row + (row.T * stiff) @ row / omega
+        C += 0.0 if self.coupling is None else np.abs(self.coupling)
+        C[:, ~fast] = 0.0
+        apart = np.maximum(np.abs(np.subtract.outer(omega**2, omega**2)), 4 * omega / span)
+        own = np.minimum(1.0, span / 2 * omega * (C**2 / apart).sum(axis=0))
+        moved = np.minimum(1.0, 2 * C * omega / apart) @ most + own * most
+        seen = np.abs(self.modes.seen) + np.abs(self.modes.swept) * omega
+        return np.asarray(seen[look.output] @ (moved * omega**look.order))
 
     def added(self, time: Real) -> Real:
         """Return what pulsation adds to the tension [N]."""

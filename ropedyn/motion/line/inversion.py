@@ -20,7 +20,7 @@ from ...base.errors import SceneError, SolveError
 from ...base.unit import MOTIONS
 from ...eigen.damped.rates import Rates
 from ...scene import damping
-from ...scene.force import Force, is_sampled
+from ...scene.force import Force, is_sampled, peak
 from ..modal.convolution import convolve
 from ..modal.expansion import Expansion
 from ..moved import Moved
@@ -156,7 +156,7 @@ class Line:
         wrong = _rounding(self.transfer, grid.s, self.value, self.parts) + EPS * np.abs(held)
         wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
         # transforms are rounded as those of forces that do not alternate
-        most = np.array([np.abs(one.value(self.run.time)).max() for one in self.forces])
+        most = np.array([peak(one, self.run.time) for one in self.forces])
         unsure = EPS / 4 * np.multiply.outer(most, np.abs(grid.s) ** (self.run.order - 1))
         wrong += np.einsum("drk,dk->rk", np.abs(self.value), unsure)
         wrong = PEAK * np.sqrt((wrong**2).sum(axis=1)) / grid.period

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.array import Real
-from ...scene.force import Force
+from ...scene.force import Force, peak
 from ..moved import Moved
 from ..request import TOLERANCE, Run
 from .convolution import motion_under
@@ -131,8 +131,12 @@ def _drifted(run: Run, each: list[tuple[Share, int, Real]], most: Real, since: R
 
 def sizes(modes: Expansion, drive: int, push: Force | float, time: Real, order: int) -> Real:
     """Return how large modes are without their signs, off resonance, (responses, k)."""
-    pushes, blow = peak(push, time)
     span = float(time[-1] - time[0])
+    if isinstance(push, float):
+        pushes, blow = abs(push), 0.0
+    else:
+        pushes = peak(push, time)
+        blow = sum(abs(size) for at, size in push.blows if time[0] <= at <= time[-1])
     each = [
         pushes * _reach(modes.square, span, order + n, 2)
         + blow * _reach(modes.square, span, order + n, 1)
@@ -169,14 +173,3 @@ def _reach(square: Real, span: float, order: int, smooth: int) -> Real:
     with np.errstate(divide="ignore"):
         far = 2 * omega**-left
     return np.asarray(np.minimum(far, span**left) if left >= 0 else far)
-
-
-def peak(push: Force | float, time: Real) -> tuple[float, float]:
-    """Return the largest value of what pushes while it is followed, and its blows together."""
-    if isinstance(push, float):
-        return abs(push), 0.0
-    begin, end = float(time[0]), float(time[-1])
-    breaks = [begin, *(at for at in push.breaks if begin < at < end), end]
-    between = (np.array(breaks[1:]) + np.array(breaks[:-1])) / 2
-    blows = sum(abs(size) for at, size in push.blows if begin <= at <= end)
-    return max(float(np.abs(push.value(at)).max()) for at in (time, between)), float(blows)

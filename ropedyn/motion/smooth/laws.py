@@ -74,6 +74,8 @@ def slopes(law: Law, time: Real, size: Real) -> tuple[float, float]:
     As far as a few motions within its size (3,) tell.
     """
     u, v, _ = size.tolist()
+    if law.kind == "stop" or (law.kind == "power" and law.value[1] < 1):
+        return 0.0, 0.0
     if law.call is None:
         return 0.0, law.value[0] * law.value[1] * v ** (law.value[1] - 1)
     at = [(t, x * u, y * v) for t in time[[0, -1]].tolist() for x in BESIDE for y in BESIDE]
