@@ -19,13 +19,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.array import Complex, Real
+from ...base.array import Complex, Flags, Real
 from ...base.computed import computed
 from ..modal.exponentials import rates
 
 STAGES = 5  # Errors fall with the ninth power of a step that resolves the motion.
 PANEL = 18  # Gauss's nodes of a panel of an integral,
-PER_RADIAN = 0.6  # and so many more for each radian that modes turn in it.
+PER_RADIAN = 0.6  # and so many more for each radian that modes turn in it,
+TURNS = 16.0  # up to so many: those that turn further are integrated by parts.
 
 
 @lru_cache(maxsize=8)
@@ -96,6 +97,28 @@ class Oscillating:
         return Reached(theta, change, self._pushed(h, theta))
 
     def _pushed(self, h: float, theta: float) -> Real:
+        """Return (q, q') at theta h per force of 1 at each stage, (stages, 2, k)."""
+        fast = self.rate[:, 0].imag * theta * h > TURNS
+        total = np.empty((STAGES, 2, len(fast)))
+        total[..., ~fast] = self._only(~fast)._by_panels(h, theta)
+        total[..., fast] = self._only(fast)._by_parts(h, theta)
+        return total
+
+    def _only(self, modes: Flags) -> Oscillating:
+        own = self.sigma[modes], self.square[modes], self.push[modes]
+        return Oscillating(*own, self.seen[:, modes], self.swept[:, modes])
+
+    def _by_parts(self, h: float, theta: float) -> Real:
+        """Return them of modes that swing: a polynomial has few derivatives."""
+        p, t = self.rate[:, 0], theta * h
+        grown, total = np.exp(p * t), np.zeros((STAGES, len(p)), dtype=np.complex128)
+        for order in range(STAGES):
+            begin, end = lagrange(np.array([0.0, theta]), order)
+            total += (np.multiply.outer(begin, grown) - end[:, None]) / (p * h) ** order
+        return np.stack([(total / p).imag, total.imag], axis=1) / p.imag
+
+    def _by_panels(self, h: float, theta: float) -> Real:
+        """Return them of modes that turn little."""
         t = theta * h
         decay, turns = (np.abs(x).max(initial=0.0) for x in (self.rate.real, self.rate.imag))
         # what decays fast is felt near the end alone: panels grow from there on

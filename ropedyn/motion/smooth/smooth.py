@@ -39,7 +39,7 @@ from .passage import LawPassage, Runs, reach, since_they_differ
 from .stretching import StretchedPassage
 from .system import LawSystem, OutputTimes
 
-MODES, MOST_MODES = 64, 1024  # Of continuous spans and long chains, at first and at most,
+MODES, MOST_MODES = 64, 4096  # Of continuous spans and long chains, at first and at most,
 MOST_WORK = 5e7  # if a run with half of them has not had so many times stages: some seconds.
 HALVED = 2.5  # A run is off by so many times its distance to one with half: errors fall as 1/modes.
 NEAR = 2.0  # Radians of the first mode left out in which a front passes, halfway the same in both.
