@@ -221,6 +221,7 @@ def _lines(
     st, laws, soft = system.states, system.laws, system.soft
     contacts, frictions = len(laws.contacts), len(laws.frictions)
     push = st.push[:, system.first :]
+    gripped = {laws.points[k] for k in active if contacts <= k < contacts + frictions}
     line = rows.none(len(active))
     for n, k in enumerate(active):
         f = np.zeros(rows.width)
@@ -241,6 +242,8 @@ def _lines(
             else:
                 line[n] = u[k]
                 line[n, rows.s.start + 1 + k - contacts] -= 1.0
+        elif soft[k] and not system.late and laws.points[k] in gripped:
+            line[n] = f  # friction holds the dashpot too
         elif soft[k] and not system.late:
             line[n] = u[k]
             line[n, rows.e.start + extras(system).index(system.first + k)] -= 1.0

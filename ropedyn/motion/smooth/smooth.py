@@ -155,7 +155,7 @@ def allowed(
     nothing = np.maximum(NOTHING * largest, np.finfo(float).tiny)
     own = tolerance * np.maximum(most, nothing)
     own = np.where(most <= nothing, nothing, own) if rests else own
-    return np.where(held, tolerance * largest, own)
+    return np.maximum(np.where(held, tolerance * largest, own), np.finfo(float).tiny)
 
 
 def rounding(value: Real, time: Real) -> Real:
