@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import ropedyn as rd
 from ropedyn.motion.modal.convolution import convolve, release
 from ropedyn.motion.modal.expansion import Expansion
-from ropedyn.motion.modal.exponentials import _circle, _close, is_uniform
+from ropedyn.motion.modal.exponentials import _circle, _close, _grids, is_uniform
 from ropedyn.motion.modal.recurrence import changes
 from ropedyn.motion.modal.truncation import _variation, left_out
 from ropedyn.scene.force import Chirp, Impulse, Samples, Sine, Step, Sum, peak
@@ -231,6 +231,24 @@ def test_motion_does_not_depend_on_the_times_asked_for(name, order):
     assert is_uniform(GRID) and not is_uniform(GRID[some])
     again = convolve(MANY, 0, force, GRID[some], order)
     assert np.abs(again - value[:, some]).max() <= 1e-12 * np.abs(value).max()
+
+
+def test_times_of_grids_side_by_side_are_one_grid_each():
+    h = 2.0**-9
+    stages = (np.arange(400)[:, None] + [0.06, 0.28, 0.58, 0.86, 1.0]).ravel() * h
+    time = np.concatenate([[0.0], stages, stages[-1] + np.array([0.1, 0.3, 0.35]) * h])
+    parts = list(_grids(time))
+    assert len(parts) == 6
+    assert sorted(np.concatenate([np.arange(len(time))[one] for one in parts])) == list(
+        range(len(time))
+    )
+    for order in ORDERS:
+        value = convolve(MANY, 0, FORCES["sine"], time, order)
+        some = np.append(0, np.random.default_rng(2).choice(len(time), 300, replace=False))
+        some.sort()
+        again = convolve(MANY, 0, FORCES["sine"], time[np.unique(some)], order)
+        apart = np.abs(again - value[:, np.unique(some)]).max()
+        assert apart <= 1e-12 * np.abs(value).max()
 
 
 @pytest.mark.parametrize("name", [name for name in FORCES if name != "blow"])

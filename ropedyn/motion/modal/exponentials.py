@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import NamedTuple, TypeVar
 
@@ -20,6 +20,7 @@ SHARES = tuple(2**k for k in range(2, 40))
 """From these blocks on terms that have decayed are left out."""
 NOTHING = 1e-20  # A term has decayed when it is less than this part of the largest one at first.
 SLICE = 1 << 16  # So many exponentials are computed at once where times are not a grid.
+FEW, SIDE_BY_SIDE = 512, 8  # A grid is looked for among so many times, and so many grids in them.
 DIGITS = 38.0  # A circle around poles is right to so many digits, as a natural logarithm.
 MOST = 4096  # A circle has so many nodes at most, also of numbers near the end of their range.
 SMALL, TERMS = 0.5, 14  # Up to this |z| a ramp is Taylor's series of so many terms.
@@ -109,9 +110,32 @@ def evaluate(rate: Complex, coefficient: Complex, time: Real) -> Real:
     rate, where = np.unique(rate[acts], return_inverse=True)
     merged = np.zeros((len(rate), len(coefficient)), dtype=complex)
     np.add.at(merged, where, coefficient[:, acts].T)
-    if is_uniform(time):
-        return _on_grid(rate, merged.T, time)
-    return _anywhere(rate, merged.T, time)
+    out = np.empty((len(coefficient), len(time)))
+    for part in _grids(time):
+        on_grid = is_uniform(time[part])
+        out[:, part] = (_on_grid if on_grid else _anywhere)(rate, merged.T, time[part])
+    return out
+
+
+def _grids(time: Real) -> Iterator[slice]:
+    """Yield times that are a grid, as every fifth of the stages of equal steps, and the others."""
+    begin = 0
+    if not is_uniform(time):
+        step, same = np.diff(time), 2 * np.spacing(np.abs(time[-1:]))
+        while len(time) - begin > FEW:
+            left = step[begin:]
+            again = np.flatnonzero(np.abs(left[1 : SIDE_BY_SIDE + 1] - left[0]) <= same)
+            if not len(again):
+                break
+            count = int(again[0]) + 1
+            differs = np.flatnonzero(np.abs(left[count:] - left[:-count]) > same)
+            stop = begin + count + int(differs[0]) + 1 if len(differs) else len(time)
+            if stop - begin < FEW:
+                break
+            yield from (slice(begin + k, stop, count) for k in range(count))
+            begin = stop
+    if begin < len(time):
+        yield slice(begin, None)
 
 
 def is_uniform(time: Real) -> bool:

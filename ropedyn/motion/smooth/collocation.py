@@ -26,7 +26,9 @@ from ..modal.exponentials import rates
 STAGES = 5  # Errors fall with the ninth power of a step that resolves the motion.
 PANEL = 18  # Gauss's nodes of a panel of an integral,
 PER_RADIAN = 0.6  # and so many more for each radian that modes turn in it,
-TURNS = 16.0  # up to so many: those that turn further are integrated by parts.
+TURNS = 16.0  # up to so many: those that turn or decay further are integrated by parts.
+FADED = 45.0  # A mode has decayed to nothing after so many time constants.
+APART = 0.1  # Rates that differ by less of themselves are integrated together.
 
 
 @lru_cache(maxsize=8)
@@ -98,39 +100,35 @@ class Oscillating:
 
     def _pushed(self, h: float, theta: float) -> Real:
         """Return (q, q') at theta h per force of 1 at each stage, (stages, 2, k)."""
-        fast = self.rate[:, 0].imag * theta * h > TURNS
-        total = np.empty((STAGES, 2, len(fast)))
-        total[..., ~fast] = self._only(~fast)._by_panels(h, theta)
-        total[..., fast] = self._only(fast)._by_parts(h, theta)
+        one, other = self.rate.T
+        gap = np.abs(one - other)
+        apart = (gap * theta * h > 1) & (gap > APART * np.abs(self.rate).max(axis=1))
+        total = np.empty((STAGES, 2, len(apart)))
+        total[..., ~apart] = self._together(~apart, h, theta)
+        one, other = one[apart], other[apart]
+        first, second = (_followed(p, h, theta) for p in (one, other))
+        both = np.stack([first / one - second / other, first - second], axis=1)
+        total[..., apart] = (both / (one - other)).real
         return total
 
-    def _only(self, modes: Flags) -> Oscillating:
+    def _together(self, modes: Flags, h: float, theta: float) -> Real:
+        """Return them of modes whose rates cancel."""
         own = self.sigma[modes], self.square[modes], self.push[modes]
-        return Oscillating(*own, self.seen[:, modes], self.swept[:, modes])
-
-    def _by_parts(self, h: float, theta: float) -> Real:
-        """Return them of modes that swing: a polynomial has few derivatives."""
-        p, t = self.rate[:, 0], theta * h
-        grown, total = np.exp(p * t), np.zeros((STAGES, len(p)), dtype=np.complex128)
-        for order in range(STAGES):
-            begin, end = lagrange(np.array([0.0, theta]), order)
-            total += (np.multiply.outer(begin, grown) - end[:, None]) / (p * h) ** order
-        return np.stack([(total / p).imag, total.imag], axis=1) / p.imag
-
-    def _by_panels(self, h: float, theta: float) -> Real:
-        """Return them of modes that turn little."""
-        t = theta * h
-        decay, turns = (np.abs(x).max(initial=0.0) for x in (self.rate.real, self.rate.imag))
+        some, t = Oscillating(*own, self.seen[:, modes], self.swept[:, modes]), theta * h
+        slow, decay = some.rate[:, 0], np.abs(some.rate.real).max(initial=0.0)
+        lasts = np.full(len(slow), np.inf)
+        np.divide(-FADED, slow.real, out=lasts, where=slow.real < 0)
         # what decays fast is felt near the end alone: panels grow from there on
         panels = math.ceil(math.log2(max(decay * t, 1.0))) + 1
         edge = t * np.concatenate([[0.0], 0.5 ** np.arange(panels)[::-1]])
-        total = np.zeros((STAGES, 2, len(self.sigma)))
+        total = np.zeros((STAGES, 2, len(some.sigma)))
         for begin, end in pairwise(edge.tolist()):
-            count = PANEL + math.ceil(PER_RADIAN * turns * (end - begin))
+            turns = slow.imag * np.maximum(np.minimum(lasts, end) - begin, 0.0)
+            count = PANEL + math.ceil(PER_RADIAN * turns.max(initial=0.0))
             x, weight = gauss(8 * -(-count // 8))
             since = begin + (end - begin) * (x + 1) / 2
             shape = lagrange((t - since) / h) * (weight * (end - begin) / 2)[:, None]
-            for i, part in enumerate(self.blow(since)):
+            for i, part in enumerate(some.blow(since)):
                 total[:, i] += shape.T @ part
         return total
 
@@ -156,6 +154,21 @@ class Oscillating:
         change, pushed = reached.change, reached.pushed
         own = a[:, None] * change[0] + b[:, None] * change[1]
         return own, at_once + a[:, None] * pushed[:, 0] + b[:, None] * pushed[:, 1]
+
+
+def _followed(p: Complex, h: float, theta: float) -> Complex:
+    """Return p times the integrals of e^(p (theta h - s)) and each polynomial, (stages, k)."""
+    t, total = theta * h, np.zeros((STAGES, len(p)), dtype=np.complex128)
+    far = np.abs(p) * t > TURNS
+    for order in range(STAGES):  # by parts: a polynomial has few derivatives
+        begin, end = lagrange(np.array([0.0, theta]), order)
+        change = np.multiply.outer(begin, np.exp(p[far] * t)) - end[:, None]
+        total[:, far] += change / (p[far] * h) ** order
+    x, weight = gauss(8 * -(-(PANEL + math.ceil(PER_RADIAN * TURNS)) // 8))
+    since = t * (x + 1) / 2
+    shape = lagrange(theta - since / h) * (weight * t / 2)[:, None]
+    total[:, ~far] = shape.T @ np.exp(np.multiply.outer(since, p[~far])) * p[~far]
+    return total
 
 
 class Reached(NamedTuple):
