@@ -231,7 +231,10 @@ def random_case(seed):
 
 
 def compare(seed):
-    """Return the error that is said, the true one and the largest value; None where refused."""
+    """Return the error that is said, the true one and the largest value; None where refused.
+
+    What friction holds all the time counts beside what it would do: no value of it is too small.
+    """
     model, time, asked = random_case(seed)
     run = asked_of(model, time, **asked, tolerance=1e-3)
     assert not why_not_events(run)
@@ -242,7 +245,8 @@ def compare(seed):
         return None
     known = time <= exact.sure_until
     off = np.abs(found.value - exact.value)[:, known] - exact.error[:, known]
-    return found.error[:, known], off, np.abs(found.value).max()
+    moves = np.abs(exact.value).max() > 1e-15
+    return found.error[:, known], off, np.abs(found.value).max() if moves else math.inf
 
 
 @pytest.mark.long
