@@ -137,16 +137,15 @@ class CoupledSystem(LawSystem):
             return np.zeros(1)
         each = [sizes(one, 0, push, self.time, 0) for one, push in zip(self.driven, self.pushes)]
         most = sum(each, np.zeros(self.modes.seen.shape))[self.points].diagonal()
-        row = np.abs(self.row)
-        size = np.stack([row @ (most * omega**n) for n in range(3)])
-        laws = [slopes(one.law, self.time, moves) for one, moves in zip(self.laws, size.T)]
+        row, w = np.abs(self.row), omega[fast]
+        at_laws = np.stack([row @ (most * omega**n) for n in range(3)]).T
+        laws = [slopes(one.law, self.time, moves) for one, moves in zip(self.laws, at_laws)]
         stiff, damps = np.abs(np.array(laws)).reshape(-1, 2).T
-        C = (row.T * damps) @ row + (row.T * stiff) @ row / omega
-        C += 0.0 if self.coupling is None else np.abs(self.coupling)
-        C[:, ~fast] = 0.0
-        apart = np.maximum(np.abs(np.subtract.outer(omega**2, omega**2)), 4 * omega / span)
-        own = np.minimum(1.0, span / 2 * omega * (C**2 / apart).sum(axis=0))
-        moved = np.minimum(1.0, 2 * C * omega / apart) @ most + own * most
+        C = (row.T * damps) @ row[:, fast] + (row.T * stiff) @ row[:, fast] / w
+        C += 0.0 if self.coupling is None else np.abs(self.coupling[:, fast])
+        apart = np.maximum(np.abs(np.subtract.outer(omega**2, w**2)), 4 * w / span)
+        moved = np.minimum(1.0, 2 * C * w / apart) @ most[fast]
+        moved[fast] += np.minimum(1.0, span / 2 * w * (C**2 / apart).sum(axis=0)) * most[fast]
         seen = np.abs(self.modes.seen) + np.abs(self.modes.swept) * omega
         return np.asarray(seen[look.output] @ (moved * omega**look.order))
 
