@@ -9,10 +9,13 @@ from scipy.optimize import fsolve
 from support.orbits import compared, multipliers, random_scene, states_of
 
 import ropedyn as rd
+from ropedyn.motion.acting import ActingLaw
 from ropedyn.motion.periodic import slipping
 from ropedyn.motion.periodic.continuation import Branch, Place
+from ropedyn.motion.periodic.laws import PointForces
 from ropedyn.motion.periodic.stability import FEWEST, _least, growing
 from ropedyn.motion.periodic.state import settled
+from ropedyn.scene.parts.node import Law
 
 # --- a mass on a string, and a spring that hardens -----------------------------------------------
 
@@ -24,6 +27,23 @@ def duffing(**change):
     spring = rd.NodeForce(0.5, lambda t, u, v: -CUBE * u**3)
     how = {"damping": rd.RayleighDamping(DECAY, 0.0), "parts": [spring]} | change
     return rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, **how).compile(elements=2)
+
+
+def test_forces_alone_ask_a_law_once_a_sample():
+    asked = []
+
+    def law(t, u, v):
+        asked.append(float(u))  # no arrays
+        return -CUBE * u**3
+
+    laws = [ActingLaw(0, ("z", 0.5), Law("z", "call", call=law))]
+    u = np.linspace(-1.0, 1.0, 8)[None, None]
+    force, time = PointForces(laws, [0], 1), np.linspace(0.0, 0.07, 8)[None]
+    alone = force.force(time, u, 0 * u)
+    once = len(asked)
+    felt = force.felt(time, u, 0 * u)
+    assert (once, len(asked) - once) == (8, 40)
+    np.testing.assert_array_equal(alone, felt.force)
 
 
 def hardens(x):

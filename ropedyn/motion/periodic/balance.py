@@ -82,7 +82,7 @@ class HarmonicBalance:
 
     def forces(self, x: Real, omega: Real | float) -> Complex:
         """Return the harmonics of the forces, (points, K + 1)."""
-        return self.coefficients(self.force.felt(*self.motion(self.complex(x), omega)).force)
+        return self.coefficients(self.force.force(*self.motion(self.complex(x), omega)))
 
     def driven(self, share: Real | float = 1.0) -> Complex:
         """Return the harmonics of the drive, (K + 1,)."""

@@ -46,8 +46,19 @@ class PointForces:
         """Of a period for each harmonic: more where forces bend."""
         return BENT if any(one.law.kind in ("stop", "power") for one in self.laws) else SMOOTH
 
+    def force(self, time: Real, u: Real, v: Real) -> Real:
+        """Return the forces of motion over a period; laws in Python are not asked for slopes."""
+        force = np.zeros(u.shape)
+        for one, k in zip(self.laws, self.at):
+            moved = time, u[..., k, :], v[..., k, :]
+            called = one.law.kind == "call"
+            force[..., k, :] += (
+                asked_law(one, *moved) if called else KINDS[one.law.kind](one, *moved)[0]
+            )
+        return force if self.tension is None else force + self.tension.felt(time, u)[0]
+
     def felt(self, time: Real, u: Real, v: Real) -> Felt:
-        """Return the forces of motion over a period, and their slopes."""
+        """Return them with their slopes."""
         force = np.zeros(u.shape)
         by_u, by_v = np.zeros((2, *u.shape[:-2], self.points, *u.shape[-2:]))
         for one, k in zip(self.laws, self.at):
