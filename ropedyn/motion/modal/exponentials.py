@@ -110,6 +110,8 @@ def evaluate(rate: Complex, coefficient: Complex, time: Real) -> Real:
     rate, where = np.unique(rate[acts], return_inverse=True)
     merged = np.zeros((len(rate), len(coefficient)), dtype=complex)
     np.add.at(merged, where, coefficient[:, acts].T)
+    if is_uniform(time):
+        return _on_grid(rate, merged.T, time)
     out = np.empty((len(coefficient), len(time)))
     for part in _grids(time):
         on_grid = is_uniform(time[part])
@@ -118,22 +120,20 @@ def evaluate(rate: Complex, coefficient: Complex, time: Real) -> Real:
 
 
 def _grids(time: Real) -> Iterator[slice]:
-    """Yield times that are a grid, as every fifth of the stages of equal steps, and the others."""
-    begin = 0
-    if not is_uniform(time):
-        step, same = np.diff(time), 2 * np.spacing(np.abs(time[-1:]))
-        while len(time) - begin > FEW:
-            left = step[begin:]
-            again = np.flatnonzero(np.abs(left[1 : SIDE_BY_SIDE + 1] - left[0]) <= same)
-            if not len(again):
-                break
-            count = int(again[0]) + 1
-            differs = np.flatnonzero(np.abs(left[count:] - left[:-count]) > same)
-            stop = begin + count + int(differs[0]) + 1 if len(differs) else len(time)
-            if stop - begin < FEW:
-                break
-            yield from (slice(begin + k, stop, count) for k in range(count))
-            begin = stop
+    """Yield times that are a grid, as every fifth of the stages of equal steps, and the rest."""
+    begin, step, same = 0, np.diff(time), 2 * np.spacing(np.abs(time[-1:]))
+    while len(time) - begin > FEW:
+        left = step[begin:]
+        again = np.flatnonzero(np.abs(left[1 : SIDE_BY_SIDE + 1] - left[0]) <= same)
+        if not len(again):
+            break
+        count = int(again[0]) + 1
+        differs = np.flatnonzero(np.abs(left[count:] - left[:-count]) > same)
+        stop = begin + count + int(differs[0]) + 1 if len(differs) else len(time)
+        if stop - begin < FEW:
+            break
+        yield from (slice(begin + k, stop, count) for k in range(count))
+        begin = stop
     if begin < len(time):
         yield slice(begin, None)
 
