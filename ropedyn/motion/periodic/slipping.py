@@ -266,9 +266,9 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
     """Follow the motion until it stays."""
     periods, share, calm = math.ceil(WINDOW / turn) * turn, (asked.tolerance or TOLERANCE) / 2, 0
     decays = Decays(max(_longest(rows, frequency) // periods, 4))
-    # changes of what is seen, by kinds, of all motion and of how periods differ from their mean
-    watched: list[Real] = []
-    moves, differs = changes = list[float](), list[float]()
+    # changes of what is seen, of all motion and of how periods differ from their mean
+    watched, moves, differs = changes = list[float](), list[float](), list[float]()
+    of_each: list[Real] = []  # of the responses of its kind
     before: tuple[Complex, ...] = ()
     for k in range(max(LONGEST // periods, LOOKS + 1)):
         found = np.zeros(len(asked.responses), dtype=np.complex128)
@@ -281,8 +281,8 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
         motion = modes.mean(axis=1)
         unlike = modes.reshape(len(modes), -1, turn).mean(axis=2) - motion[:, None]
         if before:
-            watched.append(of_kinds(np.abs(found - before[0]), asked.responses))
-        for past, was, now in zip(changes, before[1:], (motion, unlike)):
+            of_each.append(of_kinds(np.abs(found - before[0]), asked.responses))
+        for past, was, now in zip(changes, before, (found, motion, unlike)):
             past.append(float(np.abs(now - was).max(initial=0.0)))
         before = found, motion, unlike
         if k == 0:  # what symmetry keeps at rest may grow too
@@ -300,14 +300,14 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
             continue
         # amplitudes may hang back for a while, as where friction just begins to slip
         goes = ahead / max(moves[-LOOKS:]) if ahead > 0 else 0.0
-        asks, seen = share * of_kinds(np.abs(found), asked.responses), np.array(watched)
-        least = of_kinds(rounded, asked.responses)
-        left = _seen_left(seen.max(axis=1), max(ALIKE * asks.max(), least.max()), goes)
+        asks, least = (of_kinds(of, asked.responses) for of in (share * np.abs(found), rounded))
+        left = _seen_left(watched, max(ALIKE * asks.max(), least.max()), goes)
         is_calm = left <= max(asks.max(), least.max())
         calm += is_calm
         if is_calm and calm > LOOKS:
             # rotations may be far larger, in their unit, than displacements
-            own = [_seen_left(*one, goes) for one in zip(seen.T, np.maximum(ALIKE * asks, least))]
+            kinds = zip(np.transpose(of_each).tolist(), np.maximum(ALIKE * asks, least))
+            own = [_seen_left(*kind, goes) for kind in kinds]
             error = np.maximum(np.minimum(own, left), rounded) + folded
             return Settled(found, np.where(found == 0, 0.0, error), bool(apart <= most))
     change = moves[-1] / np.abs(motion).max()
@@ -318,9 +318,9 @@ def _settled(asked: SteppedSine, rows: Sequence[Goes], frequency: float, turn: i
     )
 
 
-def _seen_left(changes: Real, least: float, goes: float) -> float:
-    """Return what those of one kind add up to, or as much as all motion still does."""
-    return max(_left(changes.tolist(), least), goes * float(changes[-LOOKS:].max()))
+def _seen_left(changes: Sequence[float], least: float, goes: float) -> float:
+    """Return what changes of what is seen add up to, or as much as all motion still does."""
+    return max(_left(changes, least), goes * max(changes[-LOOKS:]))
 
 
 def _longest(rows: Sequence[Goes], frequency: float) -> int:
