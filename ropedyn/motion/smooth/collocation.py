@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.array import Complex, Flags, Real
+from ...base.array import Complex, Real
 from ...base.computed import computed
 from ..modal.exponentials import rates
 
@@ -48,9 +48,15 @@ HIGHEST = np.linalg.inv(np.polynomial.legendre.legvander(2 * nodes(STAGES) - 1, 
 
 @lru_cache(maxsize=64)
 def gauss(count: int) -> tuple[Real, Real]:
-    """Return Gauss's nodes on (-1, 1) and their weights."""
+    """Return Gauss's nodes on (0, 1) and their weights."""
     node, weight = np.polynomial.legendre.leggauss(count)
-    return node, weight
+    return (node + 1) / 2, weight / 2
+
+
+def panel(turns: float) -> tuple[Real, Real]:
+    """Return nodes and weights on (0, 1) for what turns so far in it [rad]."""
+    count = PANEL + math.ceil(PER_RADIAN * turns)
+    return gauss(8 * -(-count // 8))
 
 
 def lagrange(theta: Real, order: int = 0) -> Real:
@@ -83,18 +89,9 @@ class Oscillating:
         seen, swept = self.seen[outputs], self.swept[outputs]
         return replace(self, push=self.push[:, inputs], seen=seen, swept=swept)
 
-    def blow(self, t: Real) -> tuple[Real, Real]:
-        """Return q and q' of each mode a time t after a blow of 1, shape (.., k)."""
-        slow, fast = self.rate.T
-        time = np.asarray(t)[..., None]
-        apart = (slow - fast) * time
-        ratio = np.divide(-np.expm1(-apart), apart, out=np.ones_like(apart), where=apart != 0)
-        q = np.exp(slow * time) * time * ratio
-        return q.real, (slow * q + np.exp(fast * time)).real
-
     def reached(self, h: float, theta: float) -> Reached:
         """Return how modes move until theta h."""
-        g, slope = self.blow(np.array(theta * h))
+        g, slope = _blow(self.rate, np.array(theta * h))
         change = np.array([[slope + 2 * self.sigma * g, g], [-self.square * g, slope]])
         return Reached(theta, change, self._pushed(h, theta))
 
@@ -104,32 +101,11 @@ class Oscillating:
         gap = np.abs(one - other)
         apart = (gap * theta * h > 1) & (gap > APART * np.abs(self.rate).max(axis=1))
         total = np.empty((STAGES, 2, len(apart)))
-        total[..., ~apart] = self._together(~apart, h, theta)
+        total[..., ~apart] = _together(self.rate[~apart], h, theta)
         one, other = one[apart], other[apart]
         first, second = (_followed(p, h, theta) for p in (one, other))
         both = np.stack([first / one - second / other, first - second], axis=1)
         total[..., apart] = (both / (one - other)).real
-        return total
-
-    def _together(self, modes: Flags, h: float, theta: float) -> Real:
-        """Return them of modes whose rates cancel."""
-        own = self.sigma[modes], self.square[modes], self.push[modes]
-        some, t = Oscillating(*own, self.seen[:, modes], self.swept[:, modes]), theta * h
-        slow, decay = some.rate[:, 0], np.abs(some.rate.real).max(initial=0.0)
-        lasts = np.full(len(slow), np.inf)
-        np.divide(-FADED, slow.real, out=lasts, where=slow.real < 0)
-        # what decays fast is felt near the end alone: panels grow from there on
-        panels = math.ceil(math.log2(max(decay * t, 1.0))) + 1
-        edge = t * np.concatenate([[0.0], 0.5 ** np.arange(panels)[::-1]])
-        total = np.zeros((STAGES, 2, len(some.sigma)))
-        for begin, end in pairwise(edge.tolist()):
-            turns = slow.imag * np.maximum(np.minimum(lasts, end) - begin, 0.0)
-            count = PANEL + math.ceil(PER_RADIAN * turns.max(initial=0.0))
-            x, weight = gauss(8 * -(-count // 8))
-            since = begin + (end - begin) * (x + 1) / 2
-            shape = lagrange((t - since) / h) * (weight * (end - begin) / 2)[:, None]
-            for i, part in enumerate(some.blow(since)):
-                total[:, i] += shape.T @ part
         return total
 
     def rows(self, reached: Reached, order: int, h: float) -> tuple[Real, Real]:
@@ -156,6 +132,35 @@ class Oscillating:
         return own, at_once + a[:, None] * pushed[:, 0] + b[:, None] * pushed[:, 1]
 
 
+def _blow(rate: Complex, t: Real) -> tuple[Real, Real]:
+    """Return q and q' of each mode a time t after a blow of 1, shape (.., k)."""
+    slow, fast = rate.T
+    time = np.asarray(t)[..., None]
+    apart = (slow - fast) * time
+    ratio = np.divide(-np.expm1(-apart), apart, out=np.ones_like(apart), where=apart != 0)
+    q = np.exp(slow * time) * time * ratio
+    return q.real, (slow * q + np.exp(fast * time)).real
+
+
+def _together(rate: Complex, h: float, theta: float) -> Real:
+    """Return how modes whose rates cancel are pushed, (stages, 2, k)."""
+    slow, t = rate[:, 0], theta * h
+    lasts = np.full(len(slow), np.inf)
+    np.divide(-FADED, slow.real, out=lasts, where=slow.real < 0)
+    # what decays fast is felt near the end alone: panels grow from there on
+    panels = math.ceil(math.log2(max(np.abs(rate.real).max(initial=0.0) * t, 1.0))) + 1
+    edge = t * np.concatenate([[0.0], 0.5 ** np.arange(panels)[::-1]])
+    total = np.zeros((STAGES, 2, len(rate)))
+    for begin, end in pairwise(edge.tolist()):
+        turns = slow.imag * np.maximum(np.minimum(lasts, end) - begin, 0.0)
+        node, weight = panel(turns.max(initial=0.0))
+        since = begin + (end - begin) * node
+        shape = lagrange((t - since) / h) * (weight * (end - begin))[:, None]
+        for i, part in enumerate(_blow(rate, since)):
+            total[:, i] += shape.T @ part
+    return total
+
+
 def _followed(p: Complex, h: float, theta: float) -> Complex:
     """Return p times the integrals of e^(p (theta h - s)) and each polynomial, (stages, k)."""
     t, total = theta * h, np.zeros((STAGES, len(p)), dtype=np.complex128)
@@ -164,9 +169,9 @@ def _followed(p: Complex, h: float, theta: float) -> Complex:
         begin, end = lagrange(np.array([0.0, theta]), order)
         change = np.multiply.outer(begin, np.exp(p[far] * t)) - end[:, None]
         total[:, far] += change / (p[far] * h) ** order
-    x, weight = gauss(8 * -(-(PANEL + math.ceil(PER_RADIAN * TURNS)) // 8))
-    since = t * (x + 1) / 2
-    shape = lagrange(theta - since / h) * (weight * t / 2)[:, None]
+    node, weight = panel(TURNS)
+    since = t * node
+    shape = lagrange(theta - since / h) * (weight * t)[:, None]
     total[:, ~far] = shape.T @ np.exp(np.multiply.outer(since, p[~far])) * p[~far]
     return total
 
