@@ -188,8 +188,8 @@ def _closed(
     b = np.where(power[:, :, None] == 1, soften, 0.0) * a
     a *= np.where(power[:, :, None] == 0, 1.0, stiff)
     # what is left out of motion by forces is held by g too
-    late = np.where((power == 0) & (soften != 0), rest / stiff, 0.0)
-    rest = np.where((power == 0) & (soften != 0), 0.0, rest)
+    lags = (power == 0) & (soften != 0)
+    late, rest = np.where(lags, rest / stiff, 0.0), np.where(lags, 0.0, rest)
     bound = np.zeros(rest.shape)
     if not np.isfinite(beyond):  # but lumps of negative inertia
         beyond = slowest_lump(asked.model, asked.component) ** 2

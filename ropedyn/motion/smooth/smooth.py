@@ -108,9 +108,10 @@ def _has_no_inertia(model: Compiled, component: tuple[str, ...], laws: list[Acti
     chain = model.chain.only(component)
     if chain.inertia is not None:
         return False
-    for point in [one.point for one in laws]:
-        node, inside = locate(model.x, point[1])
-        at = component.index(point[0])
+    for law in laws:
+        name, x = law.point
+        node, inside = locate(model.x, x)
+        at = component.index(name)
         if inside is not None or not chain.mass[chain.term_of[node], at, at] > 0:
             return True
     return False
