@@ -73,14 +73,17 @@ EVERYTHING = rd.Scene(
 """Every coordinate moves, and what stands on the rope is held, springs back, weighs and bends."""
 
 
+class KnownLong:
+    """Leaves what is known to take long to the tests that do, doctests of the package too."""
+
+    def pytest_itemcollected(self, item):
+        if item.nodeid in KNOWN_LONG:
+            item.add_marker(pytest.mark.long)
+
+
 def pytest_configure(config):
     config.pluginmanager.register(Recorder(), "claims")
-
-
-def pytest_itemcollected(item):
-    """Leave what is known to take long to the tests that do."""
-    if item.nodeid in KNOWN_LONG:
-        item.add_marker(pytest.mark.long)
+    config.pluginmanager.register(KnownLong())  # hooks of this file see what is beside it alone
 
 
 @pytest.hookimpl(trylast=True)

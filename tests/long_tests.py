@@ -23,21 +23,34 @@ def used():
 
 
 class Clock:
-    """Adds to each report what has been used since the one before."""
+    """Adds to each report what has been used since the one before, or what is shared has."""
 
     def __init__(self):
         self.before = used()
+        self.shared = {}  # by name and place of a fixture that other tests would have to make too
 
     @pytest.hookimpl(wrapper=True)
-    def pytest_runtest_makereport(self):
+    def pytest_fixture_setup(self, fixturedef):
+        begin = used()
+        made = yield
+        if fixturedef.scope != "function":
+            self.shared[fixturedef.argname, fixturedef.baseid] = used() - begin
+        return made
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(self, item, call):
         report = yield
         now = used()
         report.used, self.before = now - self.before, now
+        if call.when == "setup":
+            named = getattr(item, "fixturenames", ())
+            own = [key for key in self.shared if key[0] in named and item.nodeid.startswith(key[1])]
+            report.used = max(report.used, sum(self.shared[key] for key in own))
         return report
 
 
 class Recorder:
-    """Adds up what tests take, fixtures that they make included."""
+    """Adds up what tests take, fixtures that they need included."""
 
     def __init__(self):
         self.taken = Counter()
@@ -59,7 +72,8 @@ def write(taken):
 def main():
     recorder = Recorder()
     # by its name it acts in each worker
-    arguments = ["-p", Path(__file__).stem, "-m", "not slow", "-q", str(ROOT)]
+    places = [str(ROOT / name) for name in ("tests", "ropedyn")]
+    arguments = ["-p", Path(__file__).stem, "-m", "not slow", "-q", *places]
     if pytest.main(arguments, plugins=[recorder]) == 0:
         write(recorder.taken)
         return 0
