@@ -1332,27 +1332,27 @@ def long_model():
 )
 def test_ctrl_c_stops_a_long_frf():
     model = long_model()
-    start = time.perf_counter()
-    model.frf(np.linspace(1, 50, 200), drive=("z", 0.5))
-    each = (time.perf_counter() - start) / 200
-    count = int(20 / each)  # some 20 s if nothing stops it
+    start = time.process_time()
+    model.frf(np.linspace(1, 50, 2000), drive=("z", 0.5))
+    each = (time.process_time() - start) / 2000
+    count = int(20 / each)  # some 20 s of the processor if nothing stops it
 
     def interrupt(*_):
         raise KeyboardInterrupt
 
     before = signal.signal(signal.SIGALRM, interrupt)
     try:
-        start = time.perf_counter()
+        start = time.process_time()
         signal.setitimer(signal.ITIMER_REAL, 0.2)
         with pytest.raises(KeyboardInterrupt):
             model.frf(np.linspace(1, 50, count), drive=("z", 0.5))
-        waited = time.perf_counter() - start - 0.2
+        used = time.process_time() - start
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
-    # a slice is 2^16/501 = 130 frequencies; five times as long on a busy machine, and a second
-    # for the arrays of so many frequencies
-    assert waited < 1 + 5 * 130 * each
+    # what others use of the machine does not count: 0.2 s of two threads until the alarm, and
+    # measured, 0.6 s for the arrays of so many frequencies
+    assert used < 2
 
 
 @pytest.mark.skipif(
