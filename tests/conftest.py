@@ -42,7 +42,7 @@ LONGEST = (
 KNOWN_LONG = frozenset(
     (Path(__file__).parent / "long.txt").read_text(encoding="utf-8").splitlines()
 )
-"""Tests that tests/long_tests.py has found to take more than 0.04 s."""
+"""Tests that tests/long_tests.py has found to take more than 0.02 s."""
 EPS = float(np.finfo(float).eps)
 LENGTH, BENDING, MASS = 1.35, 54.626, 0.13725
 """Of the beam in the reference files [m, N m^2, kg]."""

@@ -1,6 +1,6 @@
 """Write tests/long.txt: ``python tests/long_tests.py`` runs all but the large samples.
 
-What takes more than 0.04 s of the processor is left to ``pytest -m long``, which CI runs too, so
+What takes more than 0.02 s of the processor is left to ``pytest -m long``, which CI runs too, so
 that the others are through while one waits.
 """
 
@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "tests" / "long.txt"
-SOON = 0.04  # [s]
+SOON = 0.02  # [s]
 
 
 def used():
