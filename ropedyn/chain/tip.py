@@ -15,7 +15,7 @@ from ..scene.parts.broken_wire import BrokenWire
 from ..scene.parts.part import standing
 from .chain import ATTACHED
 from .compiled import Compiled
-from .port import Point, locate
+from .port import Point, locate, moving
 from .rate import Weights
 from .wide import tip_rows
 
@@ -52,6 +52,11 @@ def tip_of(model: Compiled, point: Point) -> Tip:
     moved = chain.attached_row[structure].any(axis=0)
     root = [(c, float(model.x[node])) for c, moves in zip(model.coordinates, moved) if moves]
     return Tip(structure, root)
+
+
+def carrier(model: Compiled, point: Point) -> str:
+    """Return the coordinate of a point, of a tip one that moves its root."""
+    return moving(tip_of(model, point).root[0] if is_tip(point) else point)
 
 
 def _tip(model: Compiled, structure: int, factor: Complex) -> Complex:

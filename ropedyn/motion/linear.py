@@ -16,7 +16,7 @@ from ..base.array import Real
 from ..base.errors import SceneError, SolveError
 from ..base.progress import silent
 from ..chain.port import moving
-from ..chain.tip import is_tip, tip_of
+from ..chain.tip import carrier
 from ..eigen.damped.proportional import proportional
 from ..eigen.damped.rates import Rates
 from ..eigen.vectors import within
@@ -226,8 +226,7 @@ def resists_beside_ratios(run: Run) -> bool:
 def is_proportional(run: Run) -> bool:
     """Whether modes without damping are not coupled in any component that takes part."""
     model, rates = run.model, Rates.of(run.model.scene.dampings)
-    roots = [tip_of(model, p).root[0] if is_tip(p) else p for p in run.responses]
-    driven, watched = ({moving(p) for p in some} for some in (run.places, roots))
+    driven, watched = {moving(p) for p in run.places}, {carrier(model, p) for p in run.responses}
     taking = [c for c in model.components if driven & set(c) and watched & set(c)]
     return all(proportional(model.chain.only(c), rates) is not None for c in taking)
 

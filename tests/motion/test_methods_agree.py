@@ -331,3 +331,31 @@ def test_what_many_turns_round_is_part_of_the_error(parts):
     off, most = np.abs(history.value[0] - steady)[late], np.abs(steady).max()
     assert (off <= history.error[0, late]).all()
     assert history.error.max() < 1e-7 * most  # measured: 6e-9
+
+
+@pytest.mark.parametrize(
+    ("part", "method"),
+    [
+        (FAR, "events"),
+        (FAINT, "collocation"),
+        (rd.Dashpot(0.375, 1e-9, exponent=2.0), "collocation"),
+        (rd.NodeForce(0.375, lambda t, u, v: -1e-9 * u**3, coordinate="y"), "collocation"),
+    ],
+)
+def test_tips_of_wires_move_beside_laws(part, method):
+    """Beside smooth laws they stood still, with an error of 0."""
+    wires = [
+        rd.BrokenWire(x, length, 3e-4, radius=0.0) for x, length in ((0.25, 0.05), (0.5, 0.03))
+    ]
+    free = rd.Scene(
+        rd.Rope(1.0, 0.2, bending_stiffness=0.5), tension=1000.0, parts=wires, planes="both"
+    )
+    asked = {"drive": ("z", 0.75), "force": rd.Step(3.0), "response": [("wire", 1), ("wire", 0)]}
+    found, exact = (
+        scene.compile(elements=8).transient(TIME, **asked)
+        for scene in (free.replace(parts=[*wires, part]), free)
+    )
+    assert (found.cost.method, exact.cost.method) == (method, "line")
+    assert (np.abs(exact.value).max(axis=1) > 1e-5).all()
+    assert (np.abs(found.value - exact.value) <= found.error + exact.error).all()
+    assert off(found, exact) <= 1e-6  # measured: 2e-8 by the line

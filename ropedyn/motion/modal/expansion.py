@@ -100,11 +100,10 @@ def expand(
     refuse_losses(model)
     if damping.having(model.scene.dampings, "ratio"):
         refuse_other_damping(model, drives, responses)
-    roots = [tip.tip_of(model, p).root[0] if tip.is_tip(p) else p for p in responses]
     shares = []
     for component in model.components:
         d = [k for k, drive in enumerate(drives) if moving(drive) in component]
-        r = [k for k, root in enumerate(roots) if moving(root) in component]
+        r = [k for k, point in enumerate(responses) if tip.carrier(model, point) in component]
         if d and r:
             pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
             asked = _Asked(model, component, pushed, watched, modes, resolved, bound)

@@ -75,8 +75,7 @@ def _watched(
     seen: list[Point] = []
     watched = []
     for look in looks:
-        roots = [tip.tip_of(model, p).root[0] if tip.is_tip(p) else p for p in look.points]
-        which = [k for k, root in enumerate(roots) if moving(root) in component]
+        which = [k for k, p in enumerate(look.points) if tip.carrier(model, p) in component]
         watched.append((slice(len(seen), len(seen) + len(which)), which))
         seen += [look.points[k] for k in which]
     return watched, seen

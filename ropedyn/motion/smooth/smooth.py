@@ -19,6 +19,7 @@ from ...base.array import Flags, Real
 from ...base.errors import SceneError, SolveError
 from ...chain.compiled import Compiled
 from ...chain.port import Point, is_force, locate, moving
+from ...chain.tip import carrier
 from ...eigen.damped.proportional import proportional
 from ...eigen.damped.rates import Rates
 from ...eigen.vectors import within
@@ -335,7 +336,7 @@ class _Answer:
         """Add the motion of a component."""
         run = self.run
         acted = bool(acting_laws(run.model, component)) or tension_of(run.model, component)
-        watched = [k for k, r in enumerate(run.responses) if moving(r) in component]
+        watched = [k for k, r in enumerate(run.responses) if carrier(run.model, r) in component]
         at = [run.model.coordinates.index(c) for c in component]
         if not acted:
             self._linear(component, watched, at)
