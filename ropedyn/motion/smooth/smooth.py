@@ -8,7 +8,7 @@ modes that are left out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -42,8 +42,11 @@ from .system import LawSystem, OutputTimes
 
 MODES, MOST_MODES = 64, 4096  # Of continuous spans and long chains, at first and at most,
 MOST_WORK = 5e7  # if a run with half of them has not had so many times stages: some seconds.
+AT_ONCE = 1e-3  # Of such a time: sooner after a jump it is still to come.
+MORE = 16  # What jumps is off by as much with so many times the modes.
 HALVED = 2.5  # A run is off by so many times its distance to one with half: errors fall as 1/modes.
 NEAR = 2.0  # Radians of the first mode left out in which a front passes, halfway the same in both.
+FEW, FAR = 8, 4  # Where times are so few, so many times as far before and after them is looked too.
 MOST_STEPS = 2_000_000  # A run takes so many steps at most,
 HARD = 10  # or so many halvings of steps that do not converge.
 BENDS = 8.0  # Half the step divides the highest degree of smooth forces by as much at least;
@@ -263,23 +266,31 @@ def component_motion(
         return agree(coupled, tolerance, run, watched, passage)
     laws = laws_on(run.model, component)
     of = partial(LawSystem.of, run, component, laws, points, looks=looks)
+    system = of(count=MODES)
+    if not np.isfinite(system.beyond):
+        return agree(system, tolerance, run, watched, LawPassage)
+    return _of_endless(of, tolerance, run, watched)
+
+
+def _of_endless(
+    of: Callable[..., LawSystem], tolerance: float, run: Run, watched: list[Point]
+) -> Agreed:
+    """Take more of endless many modes until those left out do not show."""
     count = MODES
+    _refuse_jumps(of, tolerance, watched, at_last=True)
     while True:
         system = of(count=count)
-        if not np.isfinite(system.beyond):
-            return agree(system, tolerance, run, watched, LawPassage)
-        near = looks[0].time + NEAR / system.beyond * np.array([[-1.0], [1.0]])
-        near = np.unique(np.clip(near, *run.time[[0, -1]]))
+        near = _near(system, watched)
         found = agree(system.looking(near), tolerance, run, watched, LawPassage)
-        beside = found.looked.pop()
         if found.error is not None:
+            found.looked.pop()
             return found
         fewer = of(count=count // 2).looking(near)
         passed = LawPassage(fewer, found.h).passed(run.progress)
         found.stages += passed.stages
         looked = [own + more for own, more in zip(fewer.without_laws(), passed.looked)]
-        both = np.concatenate([looked[0] - found.looked[0], looked[-1] - beside], axis=1)
-        apart = np.abs(both).max(axis=1, initial=0.0)
+        apart = _apart(looked, found.looked)
+        found.looked.pop()
         found.truncation = HALVED * apart if passed.error is None else np.full(len(apart), np.inf)
         wrong = found.truncation + found.step_error.max(axis=1, initial=0.0)
         most = allowed(found.looked[0], tolerance, watched)
@@ -287,6 +298,8 @@ def component_motion(
         found.error = passed.error if passed.settles else None
         if found.error is not None or worst <= tolerance:
             return found
+        if count == MODES:
+            _refuse_jumps(of, tolerance, watched, at_last=False)
         if count >= MOST_MODES or count * found.stages > MOST_WORK:
             found.error = SolveError(
                 f"tolerance {tolerance:g} needs more than {count} modes: with these the error is "
@@ -294,6 +307,58 @@ def component_motion(
             )
             return found
         count *= 2
+
+
+def _apart(looked: list[Real], other: list[Real]) -> Real:
+    """Return how far two runs are apart in what is asked for and near its times, (outputs,)."""
+    both = [looked[k] - other[k] for k in (0, -1)]
+    return np.asarray(np.abs(np.concatenate(both, axis=1)).max(axis=1, initial=0.0))
+
+
+def _refuse_jumps(
+    of: Callable[..., LawSystem], tolerance: float, watched: list[Point], *, at_last: bool
+) -> None:
+    """Refuse what drives alone make jump at a time that is asked for: no number of modes knows."""
+    system = of(count=MODES)
+    end = float(system.time[-1])
+    jumps_last = _is_steep(system, watched) and system.pushed_at_once(
+        end - NEAR / system.beyond, end
+    )
+    if jumps_last != at_last:
+        return
+    apart = []
+    for count in (MODES, MORE * MODES):
+        near = _near(of(count=count), watched, at_last)
+        whole, half = (of(count=n).looking(near).without_laws() for n in (count, count // 2))
+        apart.append(_apart(whole, half))
+    jumps = apart[1] > np.maximum(apart[0] / 2, allowed(whole[0], tolerance, watched))
+    if jumps.any():
+        k = int(jumps.argmax())
+        raise SolveError(
+            f"what drives makes {watched[k]} jump at a time that is asked for: {MORE * MODES} "
+            f"modes know it to {apart[1][k]:.1e}, half of them to as much; other times are answered"
+        )
+
+
+def _is_steep(system: LawSystem, watched: Sequence[Point]) -> bool:
+    """Whether what is looked at may jump where forces do: displacements only bend."""
+    return system.looks[0].order > 0 or any(map(is_force, watched))
+
+
+def _near(system: LawSystem, watched: Sequence[Point], at_last: bool = False) -> Real:
+    """Return times at which modes left out show too: before and after those of the first look."""
+    time, begin, end = system.looks[0].time, float(system.time[0]), float(system.time[-1])
+    step = NEAR / system.beyond
+    breaks = np.sort(system.breaks)
+    # of few between two jumps, such as after the last one, none may show them by chance
+    piece = np.searchsorted(breaks, time, side="right")
+    few = time[np.bincount(piece)[piece] < FEW]
+    steps = step * np.arange(2, FAR + 1)
+    near = np.concatenate([time + step, time - step, *(few + k for k in (*steps, *-steps))])
+    # so short after a jump, or at its very time, no number of modes knows of it
+    until = end if at_last else end - AT_ONCE * step
+    past = _is_steep(system, watched) and system.pushed_at_once(end - step, until)
+    return np.unique(np.clip(near, begin, end + step if past else end))
 
 
 # --- the answer ---------------------------------------------------------------------------------

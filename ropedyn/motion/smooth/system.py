@@ -13,6 +13,7 @@ from ...base.array import Flags, Real
 from ...chain.port import Point, moving
 from ...scene.force import Force
 from ..acting import ActingLaw
+from ..line.jumps import jumps
 from ..modal.convolution import motion_under
 from ..modal.expansion import Expansion
 from ..modal.superposition import sizes
@@ -23,6 +24,7 @@ from .laws import slopes
 
 LEAST = 32  # A run has so many steps at least,
 PER_PERIOD = 4  # and a period of the lowest mode, and of what pushes, so many.
+ROUNDING = 1e-12  # Of the largest value of a force, what is left of one that ends at 0.
 SEEN = 256  # Runs are compared at so many times at least.
 
 
@@ -88,7 +90,10 @@ class LawSystem:
 
     def looking(self, time: Real) -> LawSystem:
         """Return the same that looks at other times too, at what the first look sees."""
-        return replace(self, looks=[*self.looks, self.looks[0]._replace(time=time)])
+        until = max(float(self.time[-1]), float(time[-1]))
+        whole = np.append(self.time, until) if until > self.time[-1] else self.time
+        looks = [*self.looks, self.looks[0]._replace(time=time)]
+        return replace(self, time=whole, looks=looks)
 
     @property
     def points(self) -> slice:
@@ -123,6 +128,16 @@ class LawSystem:
     def breaks(self) -> list[float]:
         """When what drives jumps or bends [s]."""
         return [at for one in self.pushes if not isinstance(one, float) for at in one.breaks]
+
+    def pushed_at_once(self, since: float, until: float) -> bool:
+        """Whether a force jumps between two times."""
+        for one in self.pushes:
+            if not isinstance(one, float):
+                at, _, jump, _ = jumps(one, self.time[[0, -1]]).T
+                size = np.abs(one.value(self.time)).max(initial=np.abs(jump).max())
+                if (np.abs(jump[(at >= since) & (at <= until)]) > ROUNDING * size).any():
+                    return True
+        return False
 
     @property
     def first_step(self) -> float:
