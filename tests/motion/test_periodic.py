@@ -448,12 +448,12 @@ def test_values_on_a_steep_part_of_a_branch_are_known_at_their_frequency():
     assert max(off) <= 1  # it was up to 240
 
 
-def stopped(friction):
-    """Return a string with a stop, and what is asked of it, beside friction."""
+def stopped(friction, driven=0.5):
+    """Return the branches of a string with friction and a stop."""
     parts = [rd.Dashpot(0.25, friction, exponent=0.0), rd.Stop(0.5, 1e3, gap=1e-3)]
     how = {"damping": rd.RayleighDamping(DECAY, 0.0), "parts": parts}
     model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, **how).compile(elements=4)
-    asked = {"drive": ("z", 0.5), "amplitude": 1.0, "response": [("z", 0.25), ("z", 0.5)]}
+    asked = {"drive": ("z", driven), "amplitude": 1.0, "response": [("z", 0.25), ("z", 0.5)]}
     return model.stepped_sine([12.0, 24.0], **asked, branches=True)
 
 
@@ -461,6 +461,13 @@ def test_branches_are_refused_where_friction_slips():
     """It was taken as holding, however little it can."""
     with pytest.raises(rd.SceneError, match="branches must be False where friction slips"):
         stopped(0.02)
+
+
+@pytest.mark.parametrize("friction", [0.02, 10.0])
+def test_branches_are_refused_where_friction_acts_on_what_is_driven(friction):
+    """No step was short enough for what does not move."""
+    with pytest.raises(rd.SceneError, match="where friction acts on the point that is driven"):
+        stopped(friction, driven=0.25)
 
 
 def test_a_point_that_friction_holds_on_branches_does_not_move():

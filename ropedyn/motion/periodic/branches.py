@@ -175,6 +175,11 @@ def _refuse(driven: Driven) -> None:
         )
     if not driven.points:
         raise SceneError("branches must be False where no law bends them, got True")
+    if driven.asked.drive in driven.held:
+        raise SceneError(
+            "branches must be False where friction acts on the point that is driven, got True: it "
+            "holds or slips"
+        )
     if not driven.keeps_time:
         raise SceneError(
             "branches must be False where a law depends on time or the tension pulsates, got True: "
