@@ -968,3 +968,24 @@ def test_friction_in_a_plane_that_nothing_moves_is_still():
     assert not history.value[0].any()
     assert not history.error[0].any()
     assert 0 < history.error[1].max() < 1e-3 * np.abs(history.value[1]).max()
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_the_first_times_are_not_known_by_chance(seed):
+    """An internal force was 6 and 16 times as far off as was said at the first time alone."""
+    time, part = np.linspace(0.0, 0.05, 151), 0.532223 / 9
+    rubs = rd.Dashpot(3 * part, 0.5), rd.Dashpot(3 * part, 1e-9, exponent=0.0)
+    asked = {
+        "drive": ("z", 3 * part),
+        "force": 0.3 * np.random.default_rng(seed).normal(size=len(time)).cumsum(),
+        "response": ("F_z", 8 * part),
+    }
+    rope, damping = rd.Rope(9 * part, 0.3), rd.RayleighDamping(1.0, 1e-5)
+    exact, found = (
+        rd.Scene(rope, tension=300.0, damping=damping, parts=[rd.PointMass(6 * part, 0.2), *parts])
+        .compile()
+        .transient(time, **asked)
+        for parts in (rubs[:1], rubs)
+    )
+    assert (exact.cost.method, found.cost.method) == ("line", "events")
+    assert (np.abs(found.value - exact.value) <= found.error + exact.error).all()

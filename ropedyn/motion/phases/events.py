@@ -31,6 +31,7 @@ OFF = 64 * np.finfo(float).eps  # Squares of poles are known to this part.
 MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.
 ROUNDED = 256 * np.finfo(float).eps  # Of the modes that move a point, what rounding moves it.
 HELD = 1e-9  # Of the modes that move a point: where it moves less, it is held.
+FIRST = 8  # So many times tell together how far the first of them are off.
 
 
 class Followed(NamedTuple):
@@ -167,8 +168,13 @@ def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
 
 
 def _running(difference: Real) -> Real:
-    """Return the largest difference up to each time: what is off does not come back."""
-    return np.maximum.accumulate(np.abs(difference), axis=1)
+    """Return the largest difference up to each time: what is off does not come back.
+
+    At the first times alone it may be small by chance.
+    """
+    size = np.abs(difference)
+    size[:, :FIRST] = size[:, :FIRST].max(axis=1, keepdims=True, initial=0.0)
+    return np.maximum.accumulate(size, axis=1)
 
 
 def _rounding(found: Followed) -> Real:
