@@ -19,7 +19,8 @@ from .spectrum import time_step
 LEAST = 16  # A record of free motion must have so many times.
 CREEP = 1e-6  # Motion whose phase turns less than by this part of its rate does not oscillate.
 VAGUE = 0.02  # A mode whose rate is not known to this part of it is none.
-FAINT = 1e-5  # Nor is what has less than this part of the largest amplitude: it may be rounding.
+FAINT = 5e-4  # Nor is what has less than this part of the largest amplitude: it may be what the
+# low-pass has left of another, or rounding.
 STOP_BAND = 100.0  # The low-pass stops by so much [dB].
 WIDEST = 250  # Half the pass band times the length of the record is at most this.
 
@@ -113,7 +114,8 @@ def ring_down(
     if not x.any():
         raise SolveError(f"nothing moves in response {response} since {time[first]:g} s")
     if near is None:  # the largest line that is not the lowest
-        lines = np.abs(np.fft.rfft(np.hanning(len(x)) * (x - x.mean())))
+        # motion is strongest where it begins: a window that is 0 there would leave none of it
+        lines = np.abs(np.fft.rfft(np.hanning(2 * len(x))[len(x) :] * (x - x.mean())))
         frequencies = np.array([(1 + int(lines[1:-1].argmax())) / (len(x) * step)])
     else:
         frequencies = check.numbers(near, "near", "Hz", sign="positive")
@@ -203,7 +205,7 @@ def _mode_near(band: Band, f: float) -> tuple[complex, complex, float, float]:
     told &= np.abs(found.size) > FAINT * np.abs(found.size).max()
     if not told.any():
         raise SolveError(f"nothing oscillates near {f:g} Hz")
-    k = int(np.where(told, np.abs(rate - 2j * np.pi * f), np.inf).argmin())
+    k = int(np.where(told, np.abs(np.abs(rate) - 2 * np.pi * f), np.inf).argmin())
     gain = band.taps @ np.exp((rate[k] - 1j * band.shift) * band.fine * np.arange(len(band.taps)))
     # of a real record half the mode is at -f
     return rate[k], 2 * found.size[k] / gain, float(variance[k]), found.residual
