@@ -300,13 +300,15 @@ class History(Answer):
         than some 30 periods only low-passed), which leaves decaying modes what they are; the matrix
         pencil finds their rates, least squares refine
         them, and the noise that is left tells their standard errors. Modes close by are fitted
-        together. Exact, to rounding, of sums of decaying modes.
+        together. Sums of decaying modes are known to about 1e-4 of a frequency and better: what a
+        low-pass leaves of other modes is no noise, and standard errors may say less.
 
         Parameters
         ----------
         near : float or array_like, shape (k,), optional
-            Where modes are looked for [Hz], to a quarter of it; the strongest line of the spectrum
-            where left out.
+            Where modes are looked for [Hz], to a quarter of it: the nearest natural frequency of
+            what has 5e-4 of the strongest motion there; the strongest line of the spectrum where
+            left out.
         response : int
             Of which response.
         since : float, optional
@@ -359,10 +361,11 @@ class History(Answer):
         One segment: the ratio of the Fourier transforms of the whole record, of the force the exact
         one of what drove, a blow at an instant, a half sine or a step between two times too. That
         is exact, but for what lies above half the rate of the times, if motion starts from rest and
-        has decayed at the end, as after a blow or a chirp. Several segments, each half over the
-        next, are averaged, as for noise; then there is a coherence, and of the force its samples
-        are taken, which are straight lines where it was given so. `Measured.notes` says which, and
-        what folds or is cut off.
+        has decayed at the end, as after a blow or a chirp, velocities and accelerations also under
+        a force that is held from there on. Several segments, each half over the next, are averaged,
+        as for noise; then there is a coherence, and of the force its samples are taken, which are
+        straight lines where it was given so. `Measured.notes` says which, and what folds or is cut
+        off.
 
         Parameters
         ----------

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..base import check
-from ..base.array import Real
+from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..scene.force import Force, Samples
 from ..signal.estimate import Estimate, estimate, estimate_known
@@ -47,12 +47,13 @@ def estimated(
     at_rest = order == 0
     sampled = partial(estimate, time, value, force, drive=drive, segments=segments)
     sampled = partial(sampled, window=window, band=band, at_rest=at_rest)
-    ends = _at_the_end(time, value, force)
+    held = order > 0 and bool(law) and _is_held(time, force)
+    ends = _at_the_end(time, value, force, held)
     if not law:
         return sampled(), (UNKNOWN, *ends)
     own = _alone(law, drive, time)
     if check.count(segments, "segments", most=len(time)) == 1 and window in (None, "boxcar"):
-        push = partial(transform, own, begin=float(time[0]), end=float(time[-1]))
+        push = partial(_transformed, own, begin=float(time[0]), end=float(time[-1]), held=held)
         how = {"error": error, "falls": 1 - order, "band": band, "at_rest": at_rest}
         found, folded, missed = estimate_known(time, value, push, **how)
         return found, (EXACT, *_folds(time, folded), *_misses(missed), *ends)
@@ -61,6 +62,22 @@ def estimated(
         return found, (WEIGHTED, *ends)
     hat = np.sinc(found.frequency * time_step(time)) ** 2
     return found._replace(value=found.value / hat), (STRAIGHT, *ends)
+
+
+def _is_held(time: Real, force: Real) -> bool:
+    """Whether some force is there at the end, and all are the same in the last part of a record."""
+    last = force[:, -max(1, len(time) // TAIL) :]
+    changes, largest = np.ptp(last, axis=1), np.abs(force).max(axis=1)
+    return bool((changes <= LEFT * largest).all() and (np.abs(last[:, -1]) > LEFT * largest).any())
+
+
+def _transformed(force: Force, omega: Real, begin: float, end: float, held: bool) -> Complex:
+    """Transform a force from begin on; what is held at the end is so for ever, but at 0 Hz."""
+    total = transform(force, omega, begin, end)
+    if held:
+        last = force.value(np.array([end])) * np.exp(-1j * omega * end)
+        total += np.divide(last, 1j * omega, out=np.zeros_like(total), where=omega != 0)
+    return total
 
 
 def _alone(law: Sequence[Force], drive: int, time: Real) -> Force:
@@ -106,8 +123,8 @@ def is_struck_between(force: Force, time: Real) -> bool:
     return bool((over > LEFT * np.abs(inside)).any())
 
 
-def _at_the_end(time: Real, value: Real, force: Real) -> tuple[str, ...]:
-    """Say what of motion and force is cut off at the end of the record."""
+def _at_the_end(time: Real, value: Real, force: Real, held: bool) -> tuple[str, ...]:
+    """Say what of motion and force is cut off at the end of the record, or held from there on."""
     notes = []
     tail = slice(-max(1, len(time) // TAIL), None)
     for name, each in ("motion", value), ("force", force):
@@ -116,5 +133,6 @@ def _at_the_end(time: Real, value: Real, force: Real) -> tuple[str, ...]:
         largest = np.abs(each).max(axis=1)
         left = np.abs(each[:, tail]).max(axis=1) / np.where(largest > 0, largest, 1.0)
         if left.max() > LEFT:
-            notes.append(f"{name}: cut off at the end, with {left.max():.2g} of its largest value")
+            how = "held after the end" if held and each is force else "cut off at the end"
+            notes.append(f"{name}: {how}, with {left.max():.2g} of its largest value")
     return tuple(notes)

@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 
 ROOT = Path(__file__).parent.parent.parent
 MODULES = sorted((ROOT / "ropedyn").rglob("*.py"))
-MOST_IN_A_CIRCLE, MOST_IN_A_FOLDER, MOST_LINES, MOST_IN_ALL = 3, 18, 600, 68_100
+MOST_IN_A_CIRCLE, MOST_IN_A_FOLDER, MOST_LINES, MOST_IN_ALL = 3, 18, 600, 68_150
 
 
 def circles(graph):
