@@ -268,8 +268,9 @@ def _first(run: Run) -> int:
 def _unknown(run: Run, tolerance: float, count: int, known: Moved, most: Real) -> SolveError:
     late = (known.error > most).any(axis=0)
     until = float(run.time[max(int(late.argmax()) - 1, 0)])
+    helps = "or an earlier end help" if until > run.time[0] else "or a smoother force help"
     return SolveError(
         f"the motion is known to {tolerance:g} of its largest value until t = {until:.4g} s only: "
-        f"with {count} steps the error grows to {tolerance * (known.error / most).max():.1e}. "
-        "A larger tolerance or an earlier end help"
+        f"with {count} steps the error is up to {tolerance * (known.error / most).max():.1e}. "
+        f"A larger tolerance {helps}"
     )

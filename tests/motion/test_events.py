@@ -989,3 +989,14 @@ def test_the_first_times_are_not_known_by_chance(seed):
     )
     assert (exact.cost.method, found.cost.method) == ("line", "events")
     assert (np.abs(found.value - exact.value) <= found.error + exact.error).all()
+
+
+def test_what_is_not_known_without_a_contact_is_not_said_to_grow_with_them():
+    parts = [rd.BrokenWire(0.25, 0.06, 1e-3, radius=3e-3), rd.Dashpot(0.5, 1.0)]
+    parts.append(rd.Stop(0.75, 1e3, gap=1e-4))
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, parts=parts).compile(
+        elements=4, element="rigid"
+    )
+    asked = {"drive": ("z", 0.25), "response": ("wire", 0), "quantity": "velocity"}
+    with pytest.raises(rd.SolveError, match="and 0 events: what these leave out is more"):
+        model.transient(np.linspace(0.0, 1e-3, 3), force=rd.Impulse(0.01), **asked)

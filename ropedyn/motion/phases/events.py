@@ -132,12 +132,17 @@ def solve_events(run: Run, *, whole: bool = False) -> History:
     )
     if stopped is not None or math.isinf(sure) or (run.partial and not whole):
         return history
-    least = run.tolerance or TOLERANCE
+    least, many = run.tolerance or TOLERANCE, len(found.events)
+    why = (
+        "what is left out and rounding grow from contact to contact. A larger tolerance or a "
+        "shorter time help"
+        if many
+        else "what these leave out is more. A larger tolerance or a smoother force help"
+    )
     refusal = SolveError(
         f"the motion is known to {least:g} of its largest value until t = {sure:.6g} s, by "
-        f"{found.modes} modes and {len(found.events)} events: what is left out and rounding grow "
-        "from contact to contact. A larger tolerance or a shorter time help, and partial=True "
-        "returns it with infinite errors after that"
+        f"{found.modes} modes and {many} events: {why}, and partial=True returns it with infinite "
+        "errors after that"
     )
     refusal.history = history
     raise refusal
